@@ -1,0 +1,44 @@
+#include "carat/base/memory.h"
+
+#include <cstdint>
+#include <cstdlib>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace carat {
+namespace {
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
+}
+
+void advise_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+  if (bytes < 2 * kHugePage) return;
+  constexpr std::uintptr_t page = 4096;
+  const auto first = (reinterpret_cast<std::uintptr_t>(data) + page - 1) / page * page;
+  const auto last = (reinterpret_cast<std::uintptr_t>(data) + bytes) / page * page;
+  if (last > first) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+#endif
+}
+
+namespace detail {
+
+void* allocate_bulk(std::size_t bytes) {
+  void* data = nullptr;
+  if (bytes < 2 * kHugePage) {
+    data = std::malloc(bytes == 0 ? 1 : bytes);
+  } else {
+    const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
+    if (rounded < bytes) throw std::bad_alloc();
+    data = std::aligned_alloc(kHugePage, rounded);
+    if (data != nullptr) advise_huge_pages(data, rounded);
+  }
+  if (data == nullptr) throw std::bad_alloc();
+  return data;
+}
+
+void free_bulk(void* data, std::size_t) noexcept { std::free(data); }
+
+}  // namespace detail
+}  // namespace carat

@@ -1,0 +1,43 @@
+#include "carat/base/parallel.h"
+
+#include <algorithm>
+#include <exception>
+#include <thread>
+
+namespace carat {
+
+int resolve_threads(int requested) {
+  if (requested > 0) return requested;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void parallel_blocks(Index n, int threads,
+                     const std::function<void(int, Index, Index)>& body) {
+  // Below this a thread costs more than it saves.
+  constexpr Index kSerialBelow = 2048;
+  const int blocks = n < kSerialBelow ? 1 : std::min<int>(resolve_threads(threads), n);
+  const auto bound = [&](int block) {
+    return static_cast<Index>(static_cast<std::int64_t>(n) * block / blocks);
+  };
+  if (blocks == 1) {
+    body(0, 0, n);
+    return;
+  }
+  std::vector<std::exception_ptr> failures(static_cast<std::size_t>(blocks));
+  const auto guarded = [&](int block) {
+    try {
+      body(block, bound(block), bound(block + 1));
+    } catch (...) {
+      failures[static_cast<std::size_t>(block)] = std::current_exception();
+    }
+  };
+  std::vector<std::jthread> workers;
+  workers.reserve(static_cast<std::size_t>(blocks) - 1);
+  for (int block = 1; block < blocks; ++block) workers.emplace_back(guarded, block);
+  guarded(0);
+  workers.clear();
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace carat

@@ -1,0 +1,46 @@
+#pragma once
+// Index and matrix types shared by every layer.
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "carat/base/memory.h"
+
+namespace carat {
+
+/// Numbers vertices, edges, faces, corners and matrix entries. 32 bit: whatever would not fit is
+/// refused with a typed error before any arithmetic on it can overflow.
+using Index = std::int32_t;
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+
+/// Positions, one row a point, contiguous like a C-ordered (n, 3) array.  [length]
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// Compressed sparse rows, columns ascending in each row.
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>;
+
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+
+/// Rows of different length over one array: row i is indices[offsets[i] .. offsets[i+1]).
+struct Csr {
+  Array<Index> offsets{0};
+  Array<Index> indices;
+
+  Index n_rows() const { return static_cast<Index>(offsets.size()) - 1; }
+  Index begin(Index row) const { return offsets[static_cast<std::size_t>(row)]; }
+  Index end(Index row) const { return offsets[static_cast<std::size_t>(row) + 1]; }
+  Index size(Index row) const { return end(row) - begin(row); }
+  std::span<const Index> row(Index row) const {
+    return {indices.data() + begin(row), static_cast<std::size_t>(size(row))};
+  }
+};
+
+}  // namespace carat

@@ -1,0 +1,47 @@
+#pragma once
+// Reading and writing surface meshes with their fields.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "carat/mesh/fields.h"
+#include "carat/mesh/polygon_mesh.h"
+
+namespace carat {
+
+/// A mesh with the fields that came with it.
+struct SurfaceData {
+  PolygonMesh mesh;
+  MeshFields fields;
+};
+
+/// One supported format, e.g. {"ply", "Stanford PLY", {".ply"}, true, true}.
+struct FileFormat {
+  std::string name;
+  std::string title;
+  std::vector<std::string> extensions;  ///< lower case, with the dot
+  bool reads = false, writes = false;
+  bool fields = false;  ///< carries named vertex and face fields
+};
+
+/// All formats, in the order of the table in the documentation.
+const std::vector<FileFormat>& file_formats();
+
+/// Reads a surface mesh. The format is found from the content where that is telling, else from
+/// the extension. Vertices and faces keep the file's order and number; nothing is triangulated;
+/// STL corners are welded where their coordinates are exactly equal.
+/// \throws IoError      missing, unreadable, truncated or malformed file, unknown format, a volume
+///                      mesh; the message names the path and the line or element
+/// \throws InvalidMesh  what the file holds is no mesh (see PolygonMesh); message with the path
+SurfaceData read_surface(const std::filesystem::path& path);
+
+/// Writes a surface mesh, with the fields where the format has them (OBJ, OFF: the mesh alone).
+/// The format is found from the extension. The file appears under its name only when it is
+/// complete: on failure an existing one is untouched.
+/// \throws IoError        unknown extension, or the file cannot be written
+/// \throws InvalidOption  a field whose number of rows does not fit the mesh
+void write_surface(const std::filesystem::path& path, const PolygonMesh& mesh,
+                   const MeshFields& fields = {});
+
+}  // namespace carat

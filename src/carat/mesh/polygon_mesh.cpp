@@ -1,0 +1,235 @@
+#include "carat/mesh/polygon_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "carat/base/error.h"
+
+namespace carat {
+namespace {
+
+constexpr std::size_t kIndexLimit = std::numeric_limits<Index>::max();
+
+void check_points(const Points& points) {
+  if (static_cast<std::size_t>(points.rows()) > kIndexLimit)
+    throw InvalidMesh(std::to_string(points.rows()) + " vertices: at most " +
+                      std::to_string(kIndexLimit) + " are supported; split the mesh");
+  if (points.array().isFinite().all()) return;
+  for (Eigen::Index v = 0; v < points.rows(); ++v)
+    for (int k = 0; k < 3; ++k)
+      if (!std::isfinite(points(v, k)))
+        throw InvalidMesh("vertex " + std::to_string(v) + ": coordinate " + "xyz"[k] + " is " +
+                              std::to_string(points(v, k)) +
+                              "; every coordinate must be a finite number",
+                          {static_cast<Index>(v)});
+}
+
+std::string describe_face(Index f, std::span<const Index> face) {
+  std::string text = "face " + std::to_string(f) + " (vertices";
+  for (std::size_t i = 0; i < face.size() && i < 8; ++i) text += " " + std::to_string(face[i]);
+  return text + (face.size() > 8 ? " ...)" : ")");
+}
+
+bool has_three_distinct(std::span<const Index> face) {
+  for (std::size_t i = 1; i < face.size(); ++i)
+    if (face[i] != face[0])
+      for (std::size_t j = i + 1; j < face.size(); ++j)
+        if (face[j] != face[0] && face[j] != face[i]) return true;
+  return false;
+}
+
+void check_faces(const Csr& faces, Index n_vertices) {
+  if (faces.offsets.empty() || faces.offsets.front() != 0 ||
+      static_cast<std::size_t>(faces.offsets.back()) != faces.indices.size())
+    throw InvalidMesh("face offsets must start at 0 and end at the number of corners (" +
+                      std::to_string(faces.indices.size()) + ")");
+  for (Index f = 0; f < faces.n_rows(); ++f)
+    if (faces.size(f) < 0)
+      throw InvalidMesh("face " + std::to_string(f) + ": face offsets must not descend", {f});
+  for (Index f = 0; f < faces.n_rows(); ++f) {
+    for (const Index v : faces.row(f))
+      if (v < 0 || v >= n_vertices)
+        throw InvalidMesh(describe_face(f, faces.row(f)) + ": vertex " + std::to_string(v) +
+                              " does not exist; the mesh has vertices 0 to " +
+                              std::to_string(n_vertices - 1),
+                          {f});
+    if (!has_three_distinct(faces.row(f)))
+      throw InvalidMesh(describe_face(f, faces.row(f)) +
+                            ": a face needs at least 3 distinct vertices; remove it",
+                        {f});
+  }
+}
+
+/// Drops every vertex that repeats its predecessor around the face (such a side has no length).
+Index drop_repeated_corners(Csr& faces) {
+  Index kept = 0;
+  Index begin = 0;
+  for (Index f = 0; f < faces.n_rows(); ++f) {
+    const Index end = faces.offsets[f + 1];
+    const Index first_kept = kept;
+    for (Index c = begin; c < end; ++c) {
+      const Index v = faces.indices[c];
+      if (kept == first_kept || faces.indices[kept - 1] != v) faces.indices[kept++] = v;
+    }
+    while (kept - first_kept > 1 && faces.indices[kept - 1] == faces.indices[first_kept]) --kept;
+    begin = end;
+    faces.offsets[f + 1] = kept;
+  }
+  const Index dropped = static_cast<Index>(faces.indices.size()) - kept;
+  faces.indices.resize(static_cast<std::size_t>(kept));
+  return dropped;
+}
+
+bool repeats_a_corner(const Csr& faces) {
+  for (Index f = 0; f < faces.n_rows(); ++f) {
+    Index previous = faces.indices[faces.end(f) - 1];
+    for (const Index v : faces.row(f)) {
+      if (v == previous) return true;
+      previous = v;
+    }
+  }
+  return false;
+}
+
+EdgeTopology build_edges(const Csr& faces, Index n_vertices) {
+  struct Side {
+    Index upper, corner;
+  };
+  const std::size_t n_corners = faces.indices.size();
+  // Bucket the sides by their lower vertex; within a bucket they come in corner order.
+  Array<Index> start(static_cast<std::size_t>(n_vertices) + 1, 0);
+  const auto for_each_side = [&](auto&& visit) {
+    for (Index f = 0; f < faces.n_rows(); ++f) {
+      const Index begin = faces.begin(f), end = faces.end(f);
+      Index v = faces.indices[begin];
+      for (Index c = begin; c < end; ++c) {
+        const Index next = faces.indices[c + 1 == end ? begin : c + 1];
+        visit(c, std::min(v, next), std::max(v, next));
+        v = next;
+      }
+    }
+  };
+  for_each_side([&](Index, Index lower, Index) { ++start[lower + 1]; });
+  for (Index v = 0; v < n_vertices; ++v) start[v + 1] += start[v];
+  Array<Side> sides(n_corners);
+  {
+    Array<Index> next(start.begin(), start.end() - 1);
+    for_each_side(
+        [&](Index c, Index lower, Index upper) { sides[next[lower]++] = {upper, c}; });
+  }
+  EdgeTopology edges;
+  edges.of_corner.resize(n_corners);
+  edges.corners.indices.resize(n_corners);
+  edges.vertices.reserve(n_corners / 2 + 1);
+  edges.corners.offsets.reserve(n_corners / 2 + 2);
+  for (Index v = 0; v < n_vertices; ++v) {
+    Side* const first = sides.data() + start[v];
+    Side* const last = sides.data() + start[v + 1];
+    const auto by_upper = [](const Side& a, const Side& b) {
+      return a.upper != b.upper ? a.upper < b.upper : a.corner < b.corner;
+    };
+    if (last - first > 24) {
+      std::sort(first, last, by_upper);
+    } else {
+      for (Side* i = first; i < last; ++i)
+        for (Side* j = i; j > first && by_upper(*j, *(j - 1)); --j) std::swap(*j, *(j - 1));
+    }
+    for (const Side* side = first; side < last; ++side) {
+      if (side == first || side->upper != (side - 1)->upper) {
+        if (side != sides.data())
+          edges.corners.offsets.push_back(static_cast<Index>(side - sides.data()));
+        edges.vertices.push_back({v, side->upper});
+      }
+      edges.of_corner[side->corner] = static_cast<Index>(edges.vertices.size()) - 1;
+      edges.corners.indices[side - sides.data()] = side->corner;
+    }
+  }
+  if (n_corners > 0) edges.corners.offsets.push_back(static_cast<Index>(n_corners));
+  return edges;
+}
+
+}  // namespace
+
+PolygonMesh::PolygonMesh() : topology_(std::make_shared<Topology>()) {}
+
+PolygonMesh::PolygonMesh(Points points, Csr faces)
+    : points_(std::move(points)), topology_(std::make_shared<Topology>()) {
+  check_points(points_);
+  if (faces.indices.size() > kIndexLimit)
+    throw InvalidMesh(std::to_string(faces.indices.size()) + " face corners: at most " +
+                      std::to_string(kIndexLimit) + " are supported; split the mesh");
+  check_faces(faces, n_vertices());
+  if (repeats_a_corner(faces)) topology_->n_dropped_corners = drop_repeated_corners(faces);
+  topology_->faces = std::move(faces);
+}
+
+PolygonMesh PolygonMesh::from_faces(Points points, const std::vector<std::vector<Index>>& faces) {
+  Csr csr;
+  csr.offsets.reserve(faces.size() + 1);
+  for (const std::vector<Index>& face : faces) {
+    if (csr.indices.size() + face.size() > kIndexLimit)
+      throw InvalidMesh("more than " + std::to_string(kIndexLimit) + " face corners; split the mesh");
+    csr.indices.insert(csr.indices.end(), face.begin(), face.end());
+    csr.offsets.push_back(static_cast<Index>(csr.indices.size()));
+  }
+  return PolygonMesh(std::move(points), std::move(csr));
+}
+
+PolygonMesh PolygonMesh::from_padded(
+    Points points,
+    const Eigen::Ref<const Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>&
+        faces) {
+  Csr csr;
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    Eigen::Index size = faces.cols();
+    while (size > 0 && faces(f, size - 1) == -1) --size;
+    for (Eigen::Index k = 0; k < size; ++k) csr.indices.push_back(faces(f, k));
+    csr.offsets.push_back(static_cast<Index>(csr.indices.size()));
+  }
+  return PolygonMesh(std::move(points), std::move(csr));
+}
+
+PolygonMesh PolygonMesh::with_points(Points points) const {
+  if (points.rows() != points_.rows())
+    throw InvalidMesh(std::to_string(points.rows()) + " points for a mesh of " +
+                      std::to_string(points_.rows()) + " vertices; the numbers must be equal");
+  check_points(points);
+  PolygonMesh moved = *this;
+  moved.points_ = std::move(points);
+  return moved;
+}
+
+const Array<Index>& PolygonMesh::corner_faces() const {
+  std::call_once(topology_->corner_faces_once, [this] {
+    Array<Index> corner_faces(static_cast<std::size_t>(n_corners()));
+    for (Index f = 0; f < n_faces(); ++f)
+      for (Index c = faces().begin(f); c < faces().end(f); ++c) corner_faces[c] = f;
+    topology_->corner_faces = std::move(corner_faces);
+  });
+  return topology_->corner_faces;
+}
+
+const Csr& PolygonMesh::vertex_corners() const {
+  std::call_once(topology_->vertex_corners_once, [this] {
+    Csr result;
+    result.offsets.assign(static_cast<std::size_t>(n_vertices()) + 1, 0);
+    for (const Index v : faces().indices) ++result.offsets[v + 1];
+    for (Index v = 0; v < n_vertices(); ++v) result.offsets[v + 1] += result.offsets[v];
+    Array<Index> next(result.offsets.begin(), result.offsets.end() - 1);
+    result.indices.resize(static_cast<std::size_t>(n_corners()));
+    for (Index c = 0; c < n_corners(); ++c) result.indices[next[faces().indices[c]]++] = c;
+    topology_->vertex_corners = std::move(result);
+  });
+  return topology_->vertex_corners;
+}
+
+const EdgeTopology& PolygonMesh::edges() const {
+  std::call_once(topology_->edges_once,
+                 [this] { topology_->edges = build_edges(faces(), n_vertices()); });
+  return topology_->edges;
+}
+
+}  // namespace carat

@@ -1,0 +1,25 @@
+#pragma once
+// One self-contained interactive HTML page of meshes and their fields.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "carat/io/mesh_file.h"
+
+namespace carat {
+
+/// One mesh of a page.
+struct ViewItem {
+  std::string title;
+  SurfaceData data;
+};
+
+/// Writes one HTML file that needs no network and no server.
+/// \param title  shown as the page's heading
+/// \throws InvalidOption  no item, or a field that does not fit its mesh
+/// \throws IoError        the file cannot be written (an existing one is then untouched)
+void write_html_view(const std::filesystem::path& path, const std::vector<ViewItem>& items,
+                     const std::string& title = "carat");
+
+}  // namespace carat
