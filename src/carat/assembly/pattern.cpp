@@ -1,0 +1,138 @@
+#include "carat/assembly/pattern.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "carat/base/error.h"
+#include "carat/base/parallel.h"
+
+namespace carat {
+namespace {
+
+/// Marks members of a set that is emptied in O(1): a member carries the current owner's number.
+class Stamps {
+ public:
+  explicit Stamps(Index n) : owner_(static_cast<std::size_t>(n), -1) {}
+  bool insert(Index member, Index owner) {
+    if (owner_[member] == owner) return false;
+    owner_[member] = owner;
+    return true;
+  }
+
+ private:
+  Array<Index> owner_;
+};
+
+/// Scratch of one thread while it collects rows.
+struct Collector {
+  Collector(Index n_vertices, Index n_faces) : vertex_seen(n_vertices), face_seen(n_faces) {}
+  Stamps vertex_seen, face_seen;
+  Array<Index> columns;
+
+  void add_face(const Csr& faces, Index f, Index row) {
+    if (!face_seen.insert(f, row)) return;
+    for (const Index v : faces.row(f))
+      if (vertex_seen.insert(v, row)) columns.push_back(v);
+  }
+};
+
+void collect_faces(const SurfaceIncidence& mesh, Index row, Collector& out) {
+  for (const Index corner : mesh.vertex_corners.row(row))
+    out.add_face(mesh.faces, mesh.corner_faces[corner], row);
+}
+
+void collect_diamonds(const SurfaceIncidence& mesh, Index row, Collector& out) {
+  collect_faces(mesh, row, out);
+  for (const Index corner : mesh.vertex_corners.row(row)) {
+    const Index f = mesh.corner_faces[corner];
+    for (Index c = mesh.faces.begin(f); c < mesh.faces.end(f); ++c)
+      for (const Index side : mesh.edge_corners.row(mesh.corner_edges[c]))
+        if (side != c) out.add_face(mesh.faces, mesh.corner_faces[side], row);
+  }
+}
+
+/// A symmetric pattern from a function that collects one row's columns in any order. Row sizes
+/// come from the first pass; the second writes the transpose, which is the same pattern with every
+/// row ascending, so that nothing is ever sorted.
+template <class Collect>
+SparseMatrix symmetric_pattern(const SurfaceIncidence& mesh, int threads, const char* what,
+                               const Collect& collect) {
+  const Index n = mesh.vertex_corners.n_rows();
+  threads = resolve_threads(threads);
+  Array<Index> row_sizes(static_cast<std::size_t>(n));
+  struct Part {
+    Index begin = 0, end = 0;
+    Array<Index> columns;
+  };
+  std::vector<Part> parts(static_cast<std::size_t>(threads));
+  parallel_blocks(n, threads, [&](int block, Index begin, Index end) {
+    Collector collector(n, mesh.faces.n_rows());
+    // Guess the size from the first rows, so that the array rarely grows.
+    constexpr Index kSample = 1000;
+    for (Index row = begin; row < end; ++row) {
+      if (row == begin + kSample)
+        collector.columns.reserve(collector.columns.size() / kSample *
+                                      static_cast<std::size_t>(end - begin) * 9 / 8 + 64);
+      const std::size_t before = collector.columns.size();
+      collect(mesh, row, collector);
+      row_sizes[row] = static_cast<Index>(collector.columns.size() - before);
+    }
+    parts[static_cast<std::size_t>(block)] = {begin, end, std::move(collector.columns)};
+  });
+  SparseMatrix pattern = allocate_rows(n, n, row_sizes, what);
+  Index* const columns = pattern.innerIndexPtr();
+  parallel_blocks(n, threads, [&](int, Index begin, Index end) {
+    Array<Index> next(pattern.outerIndexPtr() + begin, pattern.outerIndexPtr() + end);
+    const bool all = begin == 0 && end == n;
+    for (const Part& part : parts) {
+      const Index* column = part.columns.data();
+      for (Index row = part.begin; row < part.end; ++row) {
+        const Index* const last = column + row_sizes[row];
+        if (all) {
+          for (; column < last; ++column) columns[next[*column]++] = row;
+        } else {
+          for (; column < last; ++column)
+            if (*column >= begin && *column < end) columns[next[*column - begin]++] = row;
+        }
+      }
+    }
+  });
+  return pattern;
+}
+
+}  // namespace
+
+SparseMatrix allocate_rows(Index n_rows, Index n_cols, const Array<Index>& row_sizes,
+                           const char* what) {
+  SparseMatrix matrix(n_rows, n_cols);
+  std::int64_t total = 0;
+  for (const Index size : row_sizes) total += size;
+  if (total > std::numeric_limits<Index>::max())
+    throw InvalidMesh(std::string(what) + " would have " + std::to_string(total) +
+                      " entries; at most " + std::to_string(std::numeric_limits<Index>::max()) +
+                      " are supported; split the mesh or its largest faces");
+  Index* const offsets = matrix.outerIndexPtr();
+  offsets[0] = 0;
+  for (Index row = 0; row < n_rows; ++row) offsets[row + 1] = offsets[row] + row_sizes[row];
+  matrix.resizeNonZeros(total);
+  advise_huge_pages(matrix.valuePtr(), static_cast<std::size_t>(total) * sizeof(double));
+  advise_huge_pages(matrix.innerIndexPtr(), static_cast<std::size_t>(total) * sizeof(Index));
+  return matrix;
+}
+
+SparseMatrix diagonal_pattern(Index n) {
+  SparseMatrix matrix = allocate_rows(n, n, Array<Index>(static_cast<std::size_t>(n), 1), "a matrix");
+  for (Index row = 0; row < n; ++row) matrix.innerIndexPtr()[row] = row;
+  return matrix;
+}
+
+SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads) {
+  return symmetric_pattern(mesh, threads, "the matrix", collect_faces);
+}
+
+SparseMatrix diamond_pattern(const SurfaceIncidence& mesh, int threads) {
+  return symmetric_pattern(mesh, threads, "the diamond stiffness", collect_diamonds);
+}
+
+}  // namespace carat

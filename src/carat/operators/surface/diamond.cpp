@@ -1,0 +1,390 @@
+// The Diamond Laplacian on surfaces: Bunge, Botsch, Alexa 2021, section 5.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "carat/assembly/diamond_assembly.h"
+#include "carat/assembly/row_assembly.h"
+#include "carat/base/error.h"
+#include "carat/kernels/diamond_2d.h"
+#include "carat/operators/common.h"
+#include "carat/operators/registry.h"
+#include "carat/operators/surface/incidence.h"
+#include "carat/prolongation/virtual_vertices.h"
+
+namespace carat {
+namespace {
+
+/// The two corners of a diamond; -1 where the hinge's midpoint stands in for a missing face.
+struct Sides {
+  Index left, right;
+};
+
+class DiamondAssembly final : public Assembly {
+ public:
+  DiamondAssembly(const PolygonMesh& mesh, const DiscretizationOptions& options);
+  void update(const Points& points) override;
+
+ private:
+  // Symbolic.
+  void find_diamonds();
+  void make_gradient_pattern();
+
+  // Numeric.
+  void order_nonmanifold_faces(const Points& points);
+  void compute_terms(const Points& points);
+  void assemble_mass();
+  void assemble_gradient(const Points& points);
+  void collect_frames(const Points& points);
+  void report();
+
+  Index first_diamond(Index e) const {
+    return edge_diamonds_.empty() ? e : edge_diamonds_[e];
+  }
+  Index end_diamond(Index e) const {
+    return edge_diamonds_.empty() ? e + 1 : edge_diamonds_[e + 1];
+  }
+  Index n_diamonds() const { return static_cast<Index>(terms_.size()); }
+  Index edge_of(Index diamond) const {
+    const DiamondTerm& term = terms_[diamond];
+    return mesh_.edges().of_corner[term.left >= 0 ? term.left : term.right];
+  }
+  /// Face edges of more than two faces: each face is in two diamonds, so each counts half.
+  double share(Index edge) const { return mesh_.edges().corners.size(edge) > 2 ? 0.5 : 1.0; }
+  VirtualTriangle triangle(Index corner, Index v1) const {
+    if (corner < 0) return kHingeMidpoint;
+    VirtualTriangle t = virtuals_.triangles[corner];
+    if (mesh_.faces().indices[corner] != v1) t.foot = 1 - t.foot;
+    return t;
+  }
+  Diamond2d diamond(const DiamondTerm& term, const Points& points) const {
+    const double length2 = (points.row(term.v2) - points.row(term.v1)).squaredNorm();
+    return diamond_2d(length2, triangle(term.left, term.v1), triangle(term.right, term.v1),
+                      options_.eps_rel);
+  }
+  /// What a diamond adds to the mass of each of its vertices.   [BBA21 (23)]
+  /// The literal quarter would lose a quarter of every boundary diamond: it has three vertices.
+  double vertex_share(Index diamond) const {
+    const bool inner = terms_[diamond].left >= 0 && terms_[diamond].right >= 0;
+    return result_.sample_measure[diamond] / (inner ? 4 : 3);
+  }
+
+  PolygonMesh mesh_;
+  DiscretizationOptions options_;
+  SurfaceIncidence incidence_;
+  Array<Index> edge_diamonds_;  // empty: diamond e belongs to edge e
+  Array<DiamondTerm> terms_;
+  VirtualVertices virtuals_;
+  Points face_points_;  // only where frames or a coefficient need them
+};
+
+DiamondAssembly::DiamondAssembly(const PolygonMesh& mesh, const DiscretizationOptions& options)
+    : mesh_(mesh), options_(options), incidence_(surface_incidence(mesh_)) {
+  result_.name = "diamond";
+  result_.stiffness = diamond_pattern(incidence_, options_.threads);
+  result_.mass = options_.lumped_mass ? diagonal_pattern(mesh_.n_vertices())
+                                      : face_pattern(incidence_, options_.threads);
+  find_diamonds();
+  result_.sample_measure.resize(n_diamonds());
+  if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
+}
+
+void DiamondAssembly::find_diamonds() {
+  const EdgeTopology& edges = mesh_.edges();
+  const Csr& corners = edges.corners;
+  bool manifold = true;
+  for (Index e = 0; e < edges.size() && manifold; ++e) manifold = corners.size(e) <= 2;
+  if (!manifold) {
+    edge_diamonds_.resize(static_cast<std::size_t>(edges.size()) + 1);
+    std::int64_t total = 0;
+    for (Index e = 0; e <= edges.size(); ++e) {
+      edge_diamonds_[e] = static_cast<Index>(total);
+      if (e < edges.size()) total += corners.size(e) <= 2 ? 1 : corners.size(e);
+    }
+  }
+  terms_.resize(static_cast<std::size_t>(manifold ? edges.size() : edge_diamonds_.back()));
+  parallel_blocks(edges.size(), options_.threads, [&](int, Index begin, Index end) {
+    for (Index e = begin; e < end; ++e) {
+      const auto [v1, v2] = edges.vertices[e];
+      const std::span<const Index> around = corners.row(e);
+      // Left is the face that runs along the hinge from v1 to v2. Where both do, or neither, it
+      // is the one that comes first.
+      const auto runs_along = [&](Index c) { return mesh_.faces().indices[c] == v1; };
+      Sides sides{around[0], around.size() > 1 ? around[1] : -1};
+      if (!runs_along(around[0]) && (around.size() == 1 || runs_along(around[1])))
+        std::swap(sides.left, sides.right);
+      for (Index d = first_diamond(e); d < end_diamond(e); ++d)
+        terms_[d] = {0, 0, 0, v1, v2, sides.left, sides.right};
+    }
+  });
+}
+
+void DiamondAssembly::order_nonmanifold_faces(const Points& points) {
+  if (edge_diamonds_.empty()) return;
+  const EdgeTopology& edges = mesh_.edges();
+  const Points face_points = carat::face_points(mesh_, points, virtuals_.weights);
+  struct Around {
+    double angle;
+    Index corner;
+  };
+  std::vector<Around> around;
+  for (Index e = 0; e < edges.size(); ++e) {
+    if (edges.corners.size(e) <= 2) continue;
+    const Vec3 x1 = points.row(edges.vertices[e][0]).transpose();
+    const Vec3 hinge = Vec3(points.row(edges.vertices[e][1]).transpose()) - x1;
+    around.clear();
+    Vec3 reference = Vec3::Zero();
+    for (const Index corner : edges.corners.row(e)) {
+      const Vec3 to_face =
+          Vec3(face_points.row(mesh_.corner_faces()[corner]).transpose()) - x1;
+      const Vec3 normal = hinge.cross(to_face);
+      if (reference.isZero(0)) reference = normal;
+      double angle = std::atan2(reference.cross(normal).dot(hinge.normalized()),
+                                reference.dot(normal));
+      if (angle < 0) angle += 2 * std::numbers::pi;
+      around.push_back({angle, corner});
+    }
+    std::sort(around.begin(), around.end(), [](const Around& a, const Around& b) {
+      return a.angle != b.angle ? a.angle < b.angle : a.corner < b.corner;
+    });
+    for (std::size_t k = 0; k < around.size(); ++k) {
+      DiamondTerm& term = terms_[edge_diamonds_[e] + static_cast<Index>(k)];
+      term.left = around[k].corner;
+      term.right = around[(k + 1) % around.size()].corner;
+    }
+  }
+}
+
+void DiamondAssembly::compute_terms(const Points& points) {
+  Array<double> coefficient;
+  if (options_.coefficient) {
+    // The caller's function is not asked to be thread-safe.
+    coefficient.resize(terms_.size());
+    for (Index d = 0; d < n_diamonds(); ++d) {
+      const DiamondTerm& term = terms_[d];
+      const Vec3 x1 = points.row(term.v1).transpose(), x2 = points.row(term.v2).transpose();
+      Vec3 moment = Vec3::Zero();
+      double weight = 0;
+      for (const Index corner : {term.left, term.right}) {
+        if (corner < 0) continue;
+        const double area = virtuals_.triangles[corner].double_area;
+        const Vec3 xf = face_points_.row(mesh_.corner_faces()[corner]).transpose();
+        moment += area * ((x2 - x1) + (xf - x1)) / 3;
+        weight += area;
+      }
+      coefficient[d] =
+          weight > 0 ? coefficient_at(options_, x1 + moment / weight) : 1.0;
+    }
+  }
+  parallel_blocks(n_diamonds(), options_.threads, [&](int, Index begin, Index end) {
+    for (Index d = begin; d < end; ++d) {
+      DiamondTerm& term = terms_[d];
+      const Diamond2d value = diamond(term, points);
+      const double part = edge_diamonds_.empty() ? 1.0 : share(edge_of(d));
+      const double scale = options_.coefficient ? part * coefficient[d] : part;
+      term.alpha = scale * value.alpha;
+      term.beta = scale * value.beta;
+      term.gamma = scale * value.gamma;
+      result_.sample_measure[d] = part * value.area;
+    }
+  });
+}
+
+void DiamondAssembly::assemble_mass() {
+  const Csr& faces = mesh_.faces();
+  const Array<Index>& edge_of_corner = mesh_.edges().of_corner;
+  const auto for_diamonds_of = [&](Index corner, auto&& visit) {
+    const Index e = edge_of_corner[corner];
+    for (Index d = first_diamond(e); d < end_diamond(e); ++d)
+      if (terms_[d].left == corner || terms_[d].right == corner) visit(d);
+  };
+  // M^ at the virtual vertices   [BBA21 (23)]
+  Array<double> face_mass(static_cast<std::size_t>(mesh_.n_faces()));
+  parallel_blocks(mesh_.n_faces(), options_.threads, [&](int, Index begin, Index end) {
+    for (Index f = begin; f < end; ++f) {
+      double mass = 0;
+      for (Index c = faces.begin(f); c < faces.end(f); ++c)
+        for_diamonds_of(c, [&](Index d) { mass += vertex_share(d); });
+      face_mass[f] = mass;
+    }
+  });
+  // M = P^T M^ P   [BBA21 (22)]
+  const bool lumped = options_.lumped_mass;
+  const Array<double>& weights = virtuals_.weights;
+  struct NoScratch {};
+  assemble_rows(
+      result_.mass, options_.threads, [] { return NoScratch{}; },
+      [&](Index row, RowWriter& writer, NoScratch&) {
+        double own = 0;
+        for (const Index corner : mesh_.vertex_corners().row(row)) {
+          const Index f = mesh_.corner_faces()[corner];
+          const Index begin = faces.begin(f), end = faces.end(f);
+          // A diamond's two sides both meet its end points: half from each.
+          for (const Index side : {corner, corner == begin ? end - 1 : corner - 1})
+            for_diamonds_of(side, [&](Index d) {
+              const bool inner = terms_[d].left >= 0 && terms_[d].right >= 0;
+              own += inner ? vertex_share(d) / 2 : vertex_share(d);
+            });
+          const double mass = face_mass[f] * weights[corner];
+          for (Index c = begin; c < end; ++c)
+            writer.add(lumped ? row : faces.indices[c], mass * weights[c]);
+        }
+        if (own != 0) writer.add(row, own);
+      });
+}
+
+void DiamondAssembly::make_gradient_pattern() {
+  // Row 2d (along the hinge) holds the two ends, row 2d+1 (across) all vertices of the faces.
+  const EdgeTopology& edges = mesh_.edges();
+  result_.gradient_dimension = 2;
+  if (std::int64_t{n_diamonds()} * 2 > std::numeric_limits<Index>::max())
+    throw InvalidMesh("the gradient of " + std::to_string(n_diamonds()) +
+                      " diamonds has more rows than 32 bits can number; split the mesh");
+  Array<Index> row_sizes(2 * terms_.size());
+  const auto collect = [&](Index d, Array<Index>& columns) {
+    columns.clear();
+    for (const Index corner : edges.corners.row(edge_of(d))) {
+      const std::span<const Index> face = mesh_.face(mesh_.corner_faces()[corner]);
+      columns.insert(columns.end(), face.begin(), face.end());
+    }
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+  };
+  parallel_blocks(n_diamonds(), options_.threads, [&](int, Index begin, Index end) {
+    Array<Index> columns;
+    for (Index d = begin; d < end; ++d) {
+      collect(d, columns);
+      row_sizes[2 * d] = 2;
+      row_sizes[2 * d + 1] = static_cast<Index>(columns.size());
+    }
+  });
+  result_.gradient =
+      allocate_rows(2 * n_diamonds(), mesh_.n_vertices(), row_sizes, "the diamond gradient");
+  Index* const inner = result_.gradient.innerIndexPtr();
+  const Index* const outer = result_.gradient.outerIndexPtr();
+  parallel_blocks(n_diamonds(), options_.threads, [&](int, Index begin, Index end) {
+    Array<Index> columns;
+    for (Index d = begin; d < end; ++d) {
+      inner[outer[2 * d]] = terms_[d].v1;
+      inner[outer[2 * d] + 1] = terms_[d].v2;
+      collect(d, columns);
+      std::copy(columns.begin(), columns.end(), inner + outer[2 * d + 1]);
+    }
+  });
+}
+
+void DiamondAssembly::assemble_gradient(const Points& points) {
+  // G = G^ P, columns of G^ as in (13): along the hinge (u2-u1)/l, across
+  // (ul - ur - (u2-u1) shear) / (hl + hr).   [BBA21 (13), (18)]
+  const Index* const outer = result_.gradient.outerIndexPtr();
+  const Index* const inner = result_.gradient.innerIndexPtr();
+  double* const values = result_.gradient.valuePtr();
+  parallel_blocks(n_diamonds(), options_.threads, [&](int, Index begin, Index end) {
+    for (Index d = begin; d < end; ++d) {
+      const DiamondTerm& term = terms_[d];
+      std::fill(values + outer[2 * d], values + outer[2 * d + 2], 0.0);
+      const Diamond2d value = diamond(term, points);
+      if (!(value.area > 0)) continue;
+      const double length = (points.row(term.v2) - points.row(term.v1)).norm();
+      values[outer[2 * d]] = -1 / length;
+      values[outer[2 * d] + 1] = 1 / length;
+      const Index* const first = inner + outer[2 * d + 1];
+      const Index* const last = inner + outer[2 * d + 2];
+      const auto add = [&](Index v, double x) {
+        values[std::lower_bound(first, last, v) - inner] += x;
+      };
+      const double over_height = length / (2 * value.area);
+      add(term.v1, value.shear * over_height);
+      add(term.v2, -value.shear * over_height);
+      const auto add_side = [&](Index corner, double factor) {
+        if (corner < 0) {
+          add(term.v1, factor / 2);
+          add(term.v2, factor / 2);
+          return;
+        }
+        const Index f = mesh_.corner_faces()[corner];
+        for (Index c = mesh_.faces().begin(f); c < mesh_.faces().end(f); ++c)
+          add(mesh_.faces().indices[c], factor * virtuals_.weights[c]);
+      };
+      add_side(term.left, over_height);
+      add_side(term.right, -over_height);
+    }
+  });
+}
+
+void DiamondAssembly::collect_frames(const Points& points) {
+  result_.frames.parts.clear();
+  result_.frames.parts.reserve(2 * terms_.size());
+  for (Index d = 0; d < n_diamonds(); ++d) {
+    const DiamondTerm& term = terms_[d];
+    if (!(result_.sample_measure[d] > 0)) continue;
+    const Vec3 x1 = points.row(term.v1).transpose();
+    const Vec3 u = (Vec3(points.row(term.v2).transpose()) - x1).normalized();   // (10)
+    const double part = edge_diamonds_.empty() ? 1.0 : share(edge_of(d));
+    for (const bool left : {true, false}) {
+      const Index corner = left ? term.left : term.right;
+      if (corner < 0) continue;
+      const Index f = mesh_.corner_faces()[corner];
+      const Vec3 to_face = Vec3(face_points_.row(f).transpose()) - x1;
+      Vec3 v = to_face - u * u.dot(to_face);   // (11)
+      const double height = v.norm();
+      if (!(height > 0)) continue;
+      v *= (left ? 1 : -1) / height;
+      GradientFrames::Part piece{d, f, part * virtuals_.triangles[corner].double_area / 2, {}, {}};
+      piece.axes.resize(3, 2);
+      piece.axes << u, v;
+      piece.vertices = {term.v1, term.v2, -1};
+      result_.frames.parts.push_back(piece);
+    }
+  }
+}
+
+void DiamondAssembly::report() {
+  result_.diagnostics = {};
+  report_unreferenced(mesh_, result_.diagnostics);
+  report_virtual_vertices(virtuals_, result_.diagnostics);
+  std::vector<Index> excluded;
+  for (Index d = 0; d < n_diamonds(); ++d)
+    if (!(result_.sample_measure[d] > 0)) excluded.push_back(d);
+  report_degenerate(
+      std::move(excluded), options_, "diamond",
+      [&](Index d) {
+        return "edge " + std::to_string(edge_of(d)) + " between vertices " +
+               std::to_string(terms_[d].v1) + " and " + std::to_string(terms_[d].v2);
+      },
+      result_.diagnostics);
+}
+
+void DiamondAssembly::update(const Points& points) {
+  virtuals_ = virtual_vertices(mesh_, points, options_.virtual_vertex, options_.threads);
+  if (options_.coefficient || options_.parts == DiscretizationParts::Frames)
+    face_points_ = face_points(mesh_, points, virtuals_.weights);
+  order_nonmanifold_faces(points);
+  compute_terms(points);
+  assemble_mass();
+  assemble_diamonds(result_.stiffness, incidence_, terms_, edge_diamonds_, virtuals_.weights,
+                    options_.threads);
+  if (options_.parts != DiscretizationParts::Matrices) assemble_gradient(points);
+  if (options_.parts == DiscretizationParts::Frames) collect_frames(points);
+  report();
+}
+
+}  // namespace
+
+const SurfaceOperator diamond_surface_operator = {
+    "diamond",
+    "Diamond Laplacian: gradients on the diamonds of edges",
+    "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021",
+    {.symmetric = true,
+     .semidefinite = true,
+     .kernel_is_constants = true,
+     .linear_precision = true,
+     .equals_cotan_on_triangles = false,
+     .triangles_only = false,
+     .face_local = false},
+    [](const PolygonMesh& mesh, const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
+      return std::make_unique<DiamondAssembly>(mesh, options);
+    }};
+
+}  // namespace carat
