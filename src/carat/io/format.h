@@ -1,0 +1,33 @@
+#pragma once
+// What a file format gives to the table of formats.
+
+#include <filesystem>
+#include <string_view>
+
+#include "carat/io/mesh_file.h"
+
+namespace carat::detail {
+
+/// A file to read: where it is and all that is in it.
+struct FileContent {
+  std::filesystem::path path;
+  std::string_view bytes;
+};
+
+/// One format. A new one is a file that defines `<name>_format()` and a line in formats.def.
+/// Messages of its errors start with the line or element; the caller puts the path in front.
+struct FormatEntry {
+  FileFormat format;
+  /// Whether the content tells that it is of this format.
+  bool (*recognises)(std::string_view content);
+  SurfaceData (*read)(const FileContent& file);
+  /// Writes to a temporary path; null if the format is only read.
+  void (*write)(const std::filesystem::path& path, const PolygonMesh& mesh,
+                const MeshFields& fields);
+};
+
+#define CARAT_FORMAT(name) FormatEntry name##_format();
+#include "carat/io/formats.def"
+#undef CARAT_FORMAT
+
+}  // namespace carat::detail
