@@ -11,11 +11,13 @@ namespace carat {
 
 /// What every family understands.
 struct FamilyOptions {
-  int level = 0;             ///< each level halves the edge length
-  double jitter = 0;         ///< random displacement of inner vertices, 0 .. 0.5 of the shortest
-                             ///< edge at each vertex; boundaries and spheres are kept exactly
-  double anisotropy = 1;     ///< >= 1: vertices drawn together along x (see each family)
-  std::uint64_t seed = 1;    ///< of the jitter and of random sites
+  int level = 0;      ///< each level halves the edge length
+  double jitter = 0;  ///< random displacement of vertices (plane-voronoi: of the sites), 0 .. 0.5
+                      ///< of the shortest edge at each, less where a face would fold; border
+                      ///< vertices stay on their side, others on their surface
+  double anisotropy = 1;   ///< 1 .. 1000: vertices drawn together; plane: towards x = 0 with slopes
+                           ///< in this ratio; sphere: along z; torus: towards the +x side
+  std::uint64_t seed = 1;  ///< of the jitter and of random sites
 };
 
 /// A mesh family: `name` as on the command line.
@@ -30,7 +32,8 @@ struct FamilyEntry {
 const std::vector<FamilyEntry>& mesh_families();
 
 /// \throws InvalidOption  unknown family (the message lists the known ones), level < 0 or too
-///                        deep for 32-bit indices, jitter outside [0, 0.5], anisotropy < 1
+///                        deep for 32-bit indices, jitter outside [0, 0.5], anisotropy
+///                        outside [1, 1000]
 PolygonMesh generate_mesh(const std::string& family, const FamilyOptions& options = {});
 
 }  // namespace carat
