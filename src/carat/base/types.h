@@ -23,8 +23,22 @@ using Vec3 = Eigen::Vector3d;
 /// Positions, one row a point, contiguous like a C-ordered (n, 3) array.  [length]
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// Compressed sparse rows, columns ascending in each row.
-using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, Index>;
+/// Compressed sparse rows, columns ascending in each row. An Eigen matrix that can be moved: the
+/// moves of Eigen 3.4 copy, which would double the memory of every assembled operator.
+class SparseMatrix : public Eigen::SparseMatrix<double, Eigen::RowMajor, std::int32_t> {
+ public:
+  using Plain = Eigen::SparseMatrix<double, Eigen::RowMajor, std::int32_t>;
+  using Plain::Plain;
+  using Plain::operator=;
+  SparseMatrix() = default;
+  SparseMatrix(const SparseMatrix&) = default;
+  SparseMatrix& operator=(const SparseMatrix&) = default;
+  SparseMatrix(SparseMatrix&& other) noexcept { Plain::swap(other); }
+  SparseMatrix& operator=(SparseMatrix&& other) noexcept {
+    Plain::swap(other);
+    return *this;
+  }
+};
 
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;

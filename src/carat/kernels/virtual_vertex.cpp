@@ -117,12 +117,13 @@ bool VirtualVertexKernel::set_weights(double* weights) {
 
 bool VirtualVertexKernel::flips_a_triangle() const {
   // Signed against the vector area; a side shorter than noise has no triangle to flip.
+  const double noise2 = kNoise * kNoise * size_ * size_;
   Vec3 previous = x_[n_ - 1] - offset_;
   for (int i = 0; i < n_; ++i) {
     const Vec3 next = x_[i] - offset_;
-    const double length = (next - previous).norm();
-    if (length > kNoise * size_ &&
-        !(normal_.dot(previous.cross(next)) > kNoise * size_ * length))
+    const double length2 = (next - previous).squaredNorm();
+    const double signed_area = normal_.dot(previous.cross(next));
+    if (length2 > noise2 && !(signed_area > 0 && signed_area * signed_area > noise2 * length2))
       return true;
     previous = next;
   }

@@ -10,6 +10,12 @@ namespace carat {
 VirtualVertices virtual_vertices(const PolygonMesh& mesh, const Points& points,
                                  const VirtualVertexRule& rule, int threads) {
   VirtualVertices result;
+  update_virtual_vertices(mesh, points, rule, threads, result);
+  return result;
+}
+
+void update_virtual_vertices(const PolygonMesh& mesh, const Points& points,
+                             const VirtualVertexRule& rule, int threads, VirtualVertices& result) {
   result.weights.resize(static_cast<std::size_t>(mesh.n_corners()));
   result.triangles.resize(static_cast<std::size_t>(mesh.n_corners()));
   result.status.resize(static_cast<std::size_t>(mesh.n_faces()));
@@ -21,7 +27,6 @@ VirtualVertices virtual_vertices(const PolygonMesh& mesh, const Points& points,
                                         result.triangles.data() + corner);
     }
   });
-  return result;
 }
 
 Points face_points(const PolygonMesh& mesh, const Points& points, const Array<double>& weights) {

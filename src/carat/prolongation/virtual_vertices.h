@@ -20,6 +20,10 @@ struct VirtualVertices {
 VirtualVertices virtual_vertices(const PolygonMesh& mesh, const Points& points,
                                  const VirtualVertexRule& rule = {}, int threads = 0);
 
+/// The same into `result`, whose memory is reused.
+void update_virtual_vertices(const PolygonMesh& mesh, const Points& points,
+                             const VirtualVertexRule& rule, int threads, VirtualVertices& result);
+
 /// Positions of the virtual vertices, (n_faces, 3), x_f = sum a_i x_i evaluated about the mean of
 /// each face so that no accuracy is lost far from the origin.  [length]   [BBA21 (15)]
 Points face_points(const PolygonMesh& mesh, const Points& points, const Array<double>& weights);

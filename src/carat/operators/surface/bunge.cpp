@@ -35,7 +35,7 @@ class BungeAssembly final : public Assembly {
   }
 
   void update(const Points& points) override {
-    virtuals_ = virtual_vertices(mesh_, points, options_.virtual_vertex, options_.threads);
+    update_virtual_vertices(mesh_, points, options_.virtual_vertex, options_.threads, virtuals_);
     face_points_ = face_points(mesh_, points, virtuals_.weights);
     compute_terms(points);
     assemble_matrices();

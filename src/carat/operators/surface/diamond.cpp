@@ -76,6 +76,7 @@ class DiamondAssembly final : public Assembly {
   Array<Index> edge_diamonds_;  // empty: diamond e belongs to edge e
   Array<DiamondTerm> terms_;
   VirtualVertices virtuals_;
+  Array<double> face_mass_;
   Points face_points_;  // only where frames or a coefficient need them
 };
 
@@ -200,13 +201,13 @@ void DiamondAssembly::assemble_mass() {
       if (terms_[d].left == corner || terms_[d].right == corner) visit(d);
   };
   // M^ at the virtual vertices   [BBA21 (23)]
-  Array<double> face_mass(static_cast<std::size_t>(mesh_.n_faces()));
+  face_mass_.resize(static_cast<std::size_t>(mesh_.n_faces()));
   parallel_blocks(mesh_.n_faces(), options_.threads, [&](int, Index begin, Index end) {
     for (Index f = begin; f < end; ++f) {
       double mass = 0;
       for (Index c = faces.begin(f); c < faces.end(f); ++c)
         for_diamonds_of(c, [&](Index d) { mass += vertex_share(d); });
-      face_mass[f] = mass;
+      face_mass_[f] = mass;
     }
   });
   // M = P^T M^ P   [BBA21 (22)]
@@ -226,7 +227,7 @@ void DiamondAssembly::assemble_mass() {
               const bool inner = terms_[d].left >= 0 && terms_[d].right >= 0;
               own += inner ? vertex_share(d) / 2 : vertex_share(d);
             });
-          const double mass = face_mass[f] * weights[corner];
+          const double mass = face_mass_[f] * weights[corner];
           for (Index c = begin; c < end; ++c)
             writer.add(lumped ? row : faces.indices[c], mass * weights[c]);
         }
@@ -357,7 +358,7 @@ void DiamondAssembly::report() {
 }
 
 void DiamondAssembly::update(const Points& points) {
-  virtuals_ = virtual_vertices(mesh_, points, options_.virtual_vertex, options_.threads);
+  update_virtual_vertices(mesh_, points, options_.virtual_vertex, options_.threads, virtuals_);
   if (options_.coefficient || options_.parts == DiscretizationParts::Frames)
     face_points_ = face_points(mesh_, points, virtuals_.weights);
   order_nonmanifold_faces(points);
