@@ -29,7 +29,7 @@ NumberType parse_type(Scanner& scanner) {
   const std::string_view word = scanner.word();
   for (const auto& [name, type] : names)
     if (word == name) return type;
-  scanner.fail(quoted(word) + " is no PLY type such as int or double");
+  scanner.fail(in_quotes(word) + " is no PLY type such as int or double");
 }
 
 Encoding parse_encoding(Scanner& scanner) {
@@ -37,7 +37,7 @@ Encoding parse_encoding(Scanner& scanner) {
   if (word == "ascii") return Encoding::Text;
   if (word == "binary_little_endian") return Encoding::LittleEndian;
   if (word == "binary_big_endian") return Encoding::BigEndian;
-  scanner.fail("unknown PLY encoding " + quoted(word) +
+  scanner.fail("unknown PLY encoding " + in_quotes(word) +
                "; known are ascii, binary_little_endian and binary_big_endian");
 }
 
@@ -93,7 +93,7 @@ std::vector<PlyElement> read_ply_header(Scanner& scanner) {
           scanner.fail("property " + property.name + " is there twice; rename one of them");
       elements.back().properties.push_back(std::move(property));
     } else if (keyword != "comment" && keyword != "obj_info") {
-      scanner.fail(quoted(keyword) + " is no PLY header line; the file is damaged");
+      scanner.fail(in_quotes(keyword) + " is no PLY header line; the file is damaged");
     }
   }
   scanner.fail("the header has no end_header line; the file is truncated, export it again");

@@ -29,7 +29,7 @@ double saturated(const char* first, const char* last) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string shown = "'";
   for (const char c : text.substr(0, 24)) shown += c >= ' ' && c <= '~' ? c : '?';
   return shown + (text.size() > 24 ? "...'" : "'");
@@ -107,7 +107,7 @@ double Scanner::number() {
   const auto [stop, status] = std::from_chars(first, end_, value);
   const bool ends = stop == end_ || is_blank(*stop) || *stop == '\n' || *stop == syntax_.comment;
   if (status == std::errc::invalid_argument || !ends)
-    fail(quoted(word()) + " is not a number; correct it");
+    fail(in_quotes(word()) + " is not a number; correct it");
   if (status == std::errc::result_out_of_range) value = saturated(first, stop);
   at_ = stop;
   return value;
@@ -129,7 +129,7 @@ std::int64_t Scanner::integer() {
   const bool ends =
       stop == end_ || is_blank(*stop) || *stop == '\n' || *stop == '/' || *stop == syntax_.comment;
   if (status != std::errc() || !ends)
-    fail(quoted(word()) + " is not a whole number (or too large); correct it");
+    fail(in_quotes(word()) + " is not a whole number (or too large); correct it");
   at_ = stop;
   return value;
 }

@@ -99,7 +99,7 @@ class Scanner {
 };
 
 /// What a message may show of a file: printable, short, in quotes.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// "line 12: " for a position in a text.
 std::string line_prefix(std::string_view content, std::size_t position);

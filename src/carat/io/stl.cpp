@@ -93,7 +93,7 @@ Array<double> read_text(std::string_view content, Array<std::size_t>& positions)
         scanner.fail("a facet that has not 3 vertices; export the file again");
     } else if (keyword != "solid" && keyword != "endsolid" && keyword != "outer" &&
                keyword != "endloop") {
-      scanner.fail(quoted(keyword) + " is not expected here; the file is damaged");
+      scanner.fail(in_quotes(keyword) + " is not expected here; the file is damaged");
     }
   }
   if (!complete || in_facet)

@@ -140,7 +140,7 @@ std::string read_geometry(Scanner& scanner, int version, Geometry& geometry) {
     } else if (keyword == "POINT_DATA" || keyword == "CELL_DATA") {
       return keyword;
     } else {
-      scanner.fail(quoted(keyword) + " is no VTK keyword; the file is damaged");
+      scanner.fail(in_quotes(keyword) + " is no VTK keyword; the file is damaged");
     }
   }
   return {};
@@ -215,7 +215,7 @@ SurfaceData read_vtk(const FileContent& file) {
     scanner.fail("the line DATASET is missing; the file is damaged");
   const std::string dataset = upper_case(scanner.word());
   if (dataset != "POLYDATA" && dataset != "UNSTRUCTURED_GRID")
-    throw IoError("holds a data set " + quoted(dataset) +
+    throw IoError("holds a data set " + in_quotes(dataset) +
                   "; POLYDATA or UNSTRUCTURED_GRID is needed, extract the surface first");
   Geometry geometry;
   geometry.unstructured = dataset == "UNSTRUCTURED_GRID";

@@ -101,7 +101,7 @@ void read_field_data(Scanner& scanner, std::int64_t n, std::vector<Field>* field
       continue;
     }
     if (array.rows != n)
-      scanner.fail("array " + quoted(array.name) + " has " + std::to_string(array.rows) +
+      scanner.fail("array " + in_quotes(array.name) + " has " + std::to_string(array.rows) +
                    " rows, the mesh needs " + std::to_string(n) + "; the file is damaged");
     fields->push_back(read_values(scanner, std::move(array), type));
   }
@@ -148,7 +148,7 @@ NumberType read_vtk_type(Scanner& scanner) {
   const std::string word = upper_case(scanner.word());
   for (const auto& [name, type] : names)
     if (word == name) return type;
-  scanner.fail("an array of type " + quoted(word) +
+  scanner.fail("an array of type " + in_quotes(word) +
                "; only numbers such as double are supported, export without it");
 }
 
@@ -184,7 +184,7 @@ std::string read_vtk_attributes(Scanner& scanner, std::int64_t n, std::vector<Fi
     } else if (keyword == "METADATA") {
       skip_vtk_metadata_block(scanner);
     } else {
-      scanner.fail(quoted(keyword) + " is no VTK attribute; the file is damaged");
+      scanner.fail(in_quotes(keyword) + " is no VTK attribute; the file is damaged");
     }
   }
   return {};

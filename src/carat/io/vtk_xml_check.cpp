@@ -66,7 +66,7 @@ void check_vtk_xml(const FileContent& file, const char* type, VtkSession& sessio
   const std::string_view found = vtk_file_type(file.bytes);
   if (found.empty()) throw IoError("holds no element VTKFile, so it is no VTK XML file");
   if (found != type)
-    throw IoError("holds VTK data of type " + quoted(found) +
+    throw IoError("holds VTK data of type " + in_quotes(found) +
                   "; PolyData or UnstructuredGrid is needed, extract the surface first");
   vtkNew<vtkXMLDataParser> parser;
   parser->AddObserver(vtkCommand::ErrorEvent, session.observer());
