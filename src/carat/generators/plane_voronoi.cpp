@@ -232,9 +232,9 @@ bool number_vertices(const Sites& sites, const Csr& cells, Points& points, Csr& 
 
 }  // namespace
 
-/// Voronoi cells of 6 * 2^level by 7 * 2^level sites; regular hexagons to 1 % without jitter.
-/// Jitter moves the sites, within `jitter` times the distance of their neighbours, not the
-/// vertices; the anisotropy grades the sites.
+/// Voronoi cells of 6 * 2^level by 7 * 2^level sites; without jitter they are
+/// hexagons inside, with sides equal to 2.4 %. Jitter moves the sites, within `jitter` times the
+/// distance of their neighbours, not the vertices; the anisotropy grades the sites.
 PolygonMesh generate_plane_voronoi(const FamilyOptions& options) {
   const Index columns = lattice_size(options.level, 6, 7.0 / 6 * 6.2);
   const Index rows = columns / 6 * 7;

@@ -34,11 +34,10 @@ std::string describe_face(Index f, std::span<const Index> face) {
 }
 
 bool has_three_distinct(std::span<const Index> face) {
-  for (std::size_t i = 1; i < face.size(); ++i)
-    if (face[i] != face[0])
-      for (std::size_t j = i + 1; j < face.size(); ++j)
-        if (face[j] != face[0] && face[j] != face[i]) return true;
-  return false;
+  const auto second =
+      std::find_if(face.begin(), face.end(), [&](Index v) { return v != face.front(); });
+  return std::any_of(second, face.end(),
+                     [&](Index v) { return v != face.front() && v != *second; });
 }
 
 void check_faces(const Csr& faces, Index n_vertices) {
@@ -57,9 +56,9 @@ void check_faces(const Csr& faces, Index n_vertices) {
                               std::to_string(n_vertices - 1),
                           {f});
     if (!has_three_distinct(faces.row(f)))
-      throw InvalidMesh(describe_face(f, faces.row(f)) +
-                            ": a face needs at least 3 distinct vertices; remove it",
-                        {f});
+      throw InvalidMesh(
+          describe_face(f, faces.row(f)) + ": a face needs at least 3 distinct vertices; remove it",
+          {f});
   }
 }
 
@@ -117,8 +116,7 @@ EdgeTopology build_edges(const Csr& faces, Index n_vertices) {
   Array<Side> sides(n_corners);
   {
     Array<Index> next(start.begin(), start.end() - 1);
-    for_each_side(
-        [&](Index c, Index lower, Index upper) { sides[next[lower]++] = {upper, c}; });
+    for_each_side([&](Index c, Index lower, Index upper) { sides[next[lower]++] = {upper, c}; });
   }
   EdgeTopology edges;
   edges.of_corner.resize(n_corners);
@@ -171,7 +169,8 @@ PolygonMesh PolygonMesh::from_faces(Points points, const std::vector<std::vector
   csr.offsets.reserve(faces.size() + 1);
   for (const std::vector<Index>& face : faces) {
     if (csr.indices.size() + face.size() > kIndexLimit)
-      throw InvalidMesh("more than " + std::to_string(kIndexLimit) + " face corners; split the mesh");
+      throw InvalidMesh("more than " + std::to_string(kIndexLimit) +
+                        " face corners; split the mesh");
     csr.indices.insert(csr.indices.end(), face.begin(), face.end());
     csr.offsets.push_back(static_cast<Index>(csr.indices.size()));
   }

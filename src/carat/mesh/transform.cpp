@@ -29,7 +29,7 @@ void check_has_dual(const PolygonMesh& mesh) {
     const auto sides = edges.corners.row(e);
     if (sides.size() > 2)
       throw InvalidMesh(describe_edge(edges, e) + " belongs to " + std::to_string(sides.size()) +
-                            " faces; a dual mesh needs at most 2 a side: separate the sheets",
+                            " faces; a dual mesh needs at most 2 an edge: separate the sheets",
                         {e});
     if (sides.size() == 2 && mesh.faces().indices[sides[0]] == mesh.faces().indices[sides[1]])
       throw InvalidMesh(describe_edge(edges, e) + ": faces " +
