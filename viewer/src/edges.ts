@@ -1,0 +1,77 @@
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  GLSL3,
+  LineSegments,
+  ShaderMaterial,
+} from 'three';
+import type { Mesh } from './mesh';
+
+const vertexShader = /* glsl */ `
+  uniform float meanEdge;
+  uniform float pixelsPerUnit;
+  out float opacity;
+  void main() {
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    float pixels = meanEdge * pixelsPerUnit / gl_Position.w;
+    opacity = smoothstep(1.5, 9.0, pixels);
+  }
+`;
+
+const fragmentShader = /* glsl */ `
+  uniform vec3 color;
+  uniform float strength;
+  in float opacity;
+  out vec4 pixel;
+  void main() {
+    pixel = vec4(color, strength * opacity);
+  }
+`;
+
+/** The sides of the polygons; they fade out where they would cover the surface. */
+export class Edges {
+  readonly object: LineSegments<BufferGeometry, ShaderMaterial>;
+  private readonly uniforms;
+
+  constructor(mesh: Mesh) {
+    this.uniforms = {
+      meanEdge: { value: mesh.meanEdge },
+      pixelsPerUnit: { value: 1 },
+      color: { value: new Color() },
+      strength: { value: 0.55 },
+    };
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(mesh.positions, 3));
+    geometry.setIndex(new BufferAttribute(mesh.edges, 1));
+    const material = new ShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader,
+      fragmentShader,
+      uniforms: this.uniforms,
+      transparent: true,
+      depthWrite: false,
+    });
+    this.object = new LineSegments(geometry, material);
+    this.object.frustumCulled = false;
+  }
+
+  setColor(color: string): void {
+    this.uniforms.color.value.setStyle(color, '');
+  }
+
+  /**
+   * \param pixelsPerUnit  at distance 1 from the camera
+   * \param nearest        distance of the nearest point of the mesh
+   */
+  setScreen(pixelsPerUnit: number, nearest: number, wanted: boolean): void {
+    this.uniforms.pixelsPerUnit.value = pixelsPerUnit;
+    const largest = (this.uniforms.meanEdge.value * pixelsPerUnit) / nearest;
+    this.object.visible = wanted && largest > 1.5;
+  }
+
+  dispose(): void {
+    this.object.geometry.dispose();
+    this.object.material.dispose();
+  }
+}
