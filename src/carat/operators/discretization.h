@@ -28,7 +28,7 @@ enum class DiscretizationParts {
 };
 
 struct DiscretizationOptions {
-  VirtualVertexRule virtual_vertex;
+  VirtualVertexRule virtual_vertex{};
   /// Row sums instead of the operator's own mass matrix.
   bool lumped_mass = false;
   DegeneratePolicy degenerate = DegeneratePolicy::Report;
@@ -37,7 +37,7 @@ struct DiscretizationOptions {
   double eps_rel = 1e-14;
   /// K in div(K grad u), evaluated at the centroid of every sample; > 0. Empty: K = 1. It enters
   /// the stiffness (and so the laplacian), not gradient, divergence and mass.
-  std::function<double(const Vec3&)> coefficient;
+  std::function<double(const Vec3&)> coefficient{};
   DiscretizationParts parts = DiscretizationParts::Gradient;
   int threads = 0;  ///< 0: all the machine has. No result depends on it.
 };

@@ -1,0 +1,167 @@
+// Orders of convergence: slopes of log(error) over log(mean edge length) of the last three of four
+// levels, on regular and jittered meshes. Every case prints one line and records its values.
+
+#include <cstdio>
+#include <numeric>
+
+#include "carat/apps/heat_geodesics.h"
+#include "carat/apps/mean_curvature.h"
+#include "carat/apps/poisson.h"
+#include "support/claim_cases.h"
+#include "support/franke.h"
+#include "support/measures.h"
+
+namespace carat::test {
+namespace {
+
+constexpr int kFirstLevel = 1, kLastLevel = 4;
+constexpr double kSecondOrder = 1.8;
+
+double mean_edge_length(const PolygonMesh& mesh) { return mesh_statistics(mesh).edge_length.mean; }
+
+class Convergence : public testing::TestWithParam<ClaimCase> {
+ protected:
+  /// Errors over the levels; `error_of(mesh, discretization)` gives one.
+  template <class ErrorOf>
+  void measure(const ErrorOf& error_of) {
+    for (int level = kFirstLevel; level <= kLastLevel; ++level) {
+      FamilyOptions options = GetParam().options;
+      options.level = level;
+      const PolygonMesh mesh = generate_mesh(GetParam().family, options);
+      h.push_back(mean_edge_length(mesh));
+      error.push_back(error_of(mesh, discretize(mesh, GetParam().entry->name)));
+      ASSERT_TRUE(std::isfinite(error.back()));
+    }
+    slope = log_slope({h.end() - 3, h.end()}, {error.end() - 3, error.end()});
+  }
+  void report(const char* problem, double bound) {
+    const bool jittered = GetParam().options.jitter > 0;
+    RecordProperty("slope", std::to_string(slope));
+    RecordProperty("bound", std::to_string(bound));
+    RecordProperty("last_error", std::to_string(error.back()));
+    std::printf("%-10s %-8s %-17s %-8s  errors %.2e %.2e %.2e %.2e  slope %.2f  bound %.2f\n",
+                problem, GetParam().entry->name, GetParam().family.c_str(),
+                jittered ? "jittered" : "regular", error[0], error[1], error[2], error[3], slope,
+                bound);
+  }
+  std::string key() const {
+    return std::string(GetParam().entry->name) + " " + GetParam().family +
+           (GetParam().options.jitter > 0 ? " jittered" : "");
+  }
+  std::vector<double> h, error;
+  double slope = 0;
+};
+
+std::vector<ClaimCase> convergence_cases(const char* domain) {
+  std::vector<ClaimCase> cases;
+  for (const SurfaceOperator* entry : surface_operators())
+    for (const FamilyEntry& family : mesh_families()) {
+      if (std::string(family.domain) != domain || !defined_on(*entry, family.name)) continue;
+      cases.push_back({entry, family.name, {.level = kLastLevel}});
+      cases.push_back({entry, family.name, {.level = kLastLevel, .jitter = kJitter}});
+    }
+  return cases;
+}
+
+Vector values_at(const PolygonMesh& mesh, double (*function)(const Vec3&)) {
+  Vector values(mesh.n_vertices());
+  for (Index v = 0; v < mesh.n_vertices(); ++v) values[v] = function(mesh.point(v));
+  return values;
+}
+
+class PoissonFull : public Convergence {};
+
+TEST_P(PoissonFull, franke_on_the_square) {
+  measure([](const PolygonMesh& mesh, const Discretization& d) {
+    const Vector exact = values_at(mesh, franke);
+    BoundaryConditions conditions;
+    const std::vector<bool> boundary = boundary_vertices(mesh);
+    for (Index v = 0; v < mesh.n_vertices(); ++v)
+      if (boundary[v]) {
+        conditions.dirichlet_vertices.push_back(v);
+        conditions.dirichlet_values.push_back(exact[v]);
+      }
+    const PoissonSolution solution =
+        Poisson(mesh, d, conditions).solve(-values_at(mesh, franke_laplacian));
+    return error_norms(d.mass, solution.values, exact).rmse;
+  });
+  report("poisson", kSecondOrder);
+  EXPECT_GE(slope, kSecondOrder);
+}
+
+INSTANTIATE_TEST_SUITE_P(Claims, PoissonFull, testing::ValuesIn(convergence_cases("unit square")),
+                         case_name);
+
+double third_harmonic(const Vec3& x) {
+  return x.y() * (4 * x.z() * x.z() - x.x() * x.x() - x.y() * x.y());
+}
+constexpr double kThirdEigenvalue = 12;
+
+class HarmonicsFull : public Convergence {};
+
+TEST_P(HarmonicsFull, third_degree_on_the_sphere) {
+  measure([](const PolygonMesh& mesh, const Discretization& d) {
+    const Vector y = values_at(mesh, third_harmonic);
+    const PoissonSolution solution = Poisson(mesh, d).solve(y);
+    Vector e = solution.values - y / kThirdEigenvalue;
+    e.array() -= e.mean();
+    return std::sqrt(e.squaredNorm() / mesh.n_vertices());
+  });
+  report("harmonic", kSecondOrder);
+  EXPECT_GE(slope, kSecondOrder);
+}
+
+INSTANTIATE_TEST_SUITE_P(Claims, HarmonicsFull, testing::ValuesIn(convergence_cases("unit sphere")),
+                         case_name);
+
+class CurvatureFull : public Convergence {};
+
+TEST_P(CurvatureFull, unit_sphere) {
+  measure([](const PolygonMesh& mesh, const Discretization& d) {
+    const Vector e = mean_curvature(mesh, d, true).values - Vector::Ones(mesh.n_vertices());
+    return std::sqrt(e.squaredNorm() / mesh.n_vertices());
+  });
+  report("curvature", 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Claims, CurvatureFull, testing::ValuesIn(convergence_cases("unit sphere")),
+                         case_name);
+
+class GeodesicsFull : public Convergence {};
+
+TEST_P(GeodesicsFull, unit_sphere) {
+  measure([](const PolygonMesh& mesh, const Discretization& d) {
+    const Vector distance = HeatGeodesics(mesh, d).distance(0).values;
+    double sum = 0;
+    for (Index v = 0; v < mesh.n_vertices(); ++v) {
+      const Vec3 source = mesh.point(0), x = mesh.point(v);
+      const double exact = std::atan2(source.cross(x).norm(), source.dot(x));
+      sum += (distance[v] - exact) * (distance[v] - exact);
+    }
+    return std::sqrt(sum / mesh.n_vertices());
+  });
+  report("geodesics", 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Claims, GeodesicsFull, testing::ValuesIn(convergence_cases("unit sphere")),
+                         case_name);
+
+TEST(Franke, laplacian_agrees_with_finite_differences) {
+  // Central differences of step s are exact to s^2 f''''/12 ~ 1e-4 * 1e4 / 12 relative to f'' ~ 100.
+  const double s = 1e-3;
+  for (double x = 0.05; x < 1; x += 0.1)
+    for (double y = 0.05; y < 1; y += 0.1) {
+      const auto f = [&](double dx, double dy) { return franke(Vec3(x + dx, y + dy, 0)); };
+      const double estimate =
+          (f(s, 0) + f(-s, 0) + f(0, s) + f(0, -s) - 4 * f(0, 0)) / (s * s);
+      EXPECT_NEAR(franke_laplacian(Vec3(x, y, 0)), estimate, 0.01);
+    }
+  EXPECT_NEAR(franke(Vec3(0.5, 0.5, 0)), 0.75 * std::exp(-(2.5 * 2.5 + 2.5 * 2.5) / 4) +
+                                             0.75 * std::exp(-5.5 * 5.5 / 49 - 0.55) +
+                                             0.5 * std::exp(-(2.5 * 2.5 + 1.5 * 1.5) / 4) -
+                                             0.2 * std::exp(-0.25 - 6.25),
+              1e-15);
+}
+
+}  // namespace
+}  // namespace carat::test
