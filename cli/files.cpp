@@ -1,0 +1,137 @@
+#include "cli/files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "carat/base/error.h"
+#include "carat/report/html_view.h"
+
+namespace carat::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lower_case_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return extension;
+}
+
+bool is_page(const std::string& path) {
+  const std::string extension = lower_case_extension(path);
+  return extension == ".html" || extension == ".htm";
+}
+
+const FileFormat* writable_format(const std::string& path) {
+  const std::string extension = lower_case_extension(path);
+  for (const FileFormat& format : file_formats())
+    if (format.writes)
+      for (const std::string& known : format.extensions)
+        if (known == extension) return &format;
+  return nullptr;
+}
+
+std::string writable_extensions(Content content) {
+  std::string list;
+  for (const FileFormat& format : file_formats())
+    if (format.writes && (content == Content::Mesh || format.fields))
+      for (const std::string& extension : format.extensions) list += extension + " ";
+  return list + ".html";
+}
+
+/// Positions of the least and the largest finite value, -1 without one.
+std::pair<Index, Index> extreme_rows(const Vector& values) {
+  Index least = -1, largest = -1;
+  for (Index v = 0; v < values.size(); ++v) {
+    if (!std::isfinite(values[v])) continue;
+    if (least < 0 || values[v] < values[least]) least = v;
+    if (largest < 0 || values[v] > values[largest]) largest = v;
+  }
+  return {least, largest};
+}
+
+}  // namespace
+
+SurfaceData read_input(Session& session, const std::string& path) {
+  session.report()["input"] = path;
+  SurfaceData data = session.phase("read", [&] { return read_surface(path); });
+  report_sizes(session, "sizes", data.mesh);
+  session.say(path + ": " + count(data.mesh.n_vertices(), "vertex") + ", " +
+              count(data.mesh.n_edges(), "edge") + ", " + count(data.mesh.n_faces(), "face"));
+  return data;
+}
+
+void report_sizes(Session& session, const char* key, const PolygonMesh& mesh) {
+  session.report()[key] = {{"vertices", mesh.n_vertices()},
+                           {"edges", mesh.n_edges()},
+                           {"faces", mesh.n_faces()},
+                           {"corners", mesh.n_corners()}};
+}
+
+bool carries_fields(const std::string& path) {
+  const FileFormat* const format = writable_format(path);
+  return is_page(path) || (format != nullptr && format->fields);
+}
+
+void check_output(const std::string& path, Content content) {
+  if (path.empty()) return;
+  if (content == Content::Page && !is_page(path))
+    throw InvalidOption(path + ": a view is an HTML page; name a file that ends in .html");
+  const FileFormat* const format = writable_format(path);
+  if (format == nullptr && !is_page(path))
+    throw IoError(path + ": the extension '" + fs::path(path).extension().string() +
+                  "' is no format that can be written; use one of " + writable_extensions(content));
+  if (content == Content::MeshFields && !carries_fields(path))
+    throw InvalidOption(path + ": " + format->title +
+                        " files carry no fields, the result would be lost; use one of " +
+                        writable_extensions(content));
+  const fs::path folder =
+      fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored))
+    throw IoError(path + ": the folder " + folder.string() + " does not exist; create it first");
+  if (fs::is_directory(path, ignored)) throw IoError(path + ": is a folder; name a file");
+}
+
+void write_output(Session& session, const std::string& path, const std::string& title,
+                  const SurfaceData& data) {
+  if (path.empty()) return;
+  session.phase("write", [&] {
+    if (is_page(path)) {
+      write_html_view(path, {{title, data}}, title);
+    } else {
+      write_surface(path, data.mesh, data.fields);
+    }
+  });
+  session.report()["output"] = path;
+  session.say("written: " + path);
+}
+
+Field scalar_field(const std::string& name, const Vector& values) {
+  return {name, 1, {values.data(), values.data() + values.size()}};
+}
+
+Field vector_field(const std::string& name, const Points& vectors) {
+  return {name, 3, {vectors.data(), vectors.data() + vectors.size()}};
+}
+
+Json extremes(const Vector& values) {
+  const auto [least, largest] = extreme_rows(values);
+  if (least < 0) return {{"min", nullptr}, {"max", nullptr}};
+  return {{"min", values[least]},
+          {"min_vertex", least},
+          {"max", values[largest]},
+          {"max_vertex", largest}};
+}
+
+std::string describe_extremes(const Vector& values) {
+  const auto [least, largest] = extreme_rows(values);
+  if (least < 0) return "nowhere defined";
+  return text(values[least]) + " (vertex " + std::to_string(least) + ") to " +
+         text(values[largest]) + " (vertex " + std::to_string(largest) + ")";
+}
+
+}  // namespace carat::cli

@@ -1,0 +1,47 @@
+#pragma once
+// Meshes and results between files and commands.
+
+#include <string>
+
+#include "carat/io/mesh_file.h"
+#include "cli/session.h"
+
+namespace carat::cli {
+
+/// Reads a mesh as the phase "read" and reports its name and sizes.
+SurfaceData read_input(Session& session, const std::string& path);
+
+/// Reports vertices, edges, faces and corners under `key`.
+void report_sizes(Session& session, const char* key, const PolygonMesh& mesh);
+
+/// What is in a file that is about to be written.
+enum class Content {
+  Mesh,        ///< fields are welcome
+  MeshFields,  ///< pointless without fields
+  Page,        ///< a view
+};
+
+/// Refuses a file that could not be written in the end, before work is spent on it.
+/// \throws IoError        unknown extension; the folder is missing
+/// \throws InvalidOption  a format without fields where they matter
+void check_output(const std::string& path, Content content);
+
+/// Writes a mesh with fields, or a view of it where the extension is .html, as the phase "write".
+/// An empty path writes nothing.
+void write_output(Session& session, const std::string& path, const std::string& title,
+                  const SurfaceData& data);
+
+/// Whether the format of that extension carries fields.
+bool carries_fields(const std::string& path);
+
+/// One value a row as a field.
+Field scalar_field(const std::string& name, const Vector& values);
+/// One vector a row as a field.
+Field vector_field(const std::string& name, const Points& vectors);
+
+/// The extremes of the finite values and where they are, as an object for JSON.
+Json extremes(const Vector& values);
+/// The same as words, e.g. "0 to 3.1 (largest at vertex 17)".
+std::string describe_extremes(const Vector& values);
+
+}  // namespace carat::cli

@@ -1,0 +1,110 @@
+#include "cli/session.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include "carat/base/error.h"
+#include "carat/base/parallel.h"
+
+namespace carat::cli {
+namespace {
+
+void flush_output() {
+  if (!std::cout.flush()) throw IoError("standard output cannot be written; is the disk full?");
+}
+
+}  // namespace
+
+Session::Session(const std::string& command, const CommonOptions& options) : options_(options) {
+  report_["command"] = command;
+  report_["version"] = CARAT_VERSION;
+  report_["threads"] = resolve_threads(options.threads);
+}
+
+void Session::say(const std::string& line) {
+  if (!options_.json) std::cout << line << '\n';
+}
+
+void Session::note(const std::string& message) {
+  notes_.push_back(message);
+  std::cerr << "carat: note: " << message << '\n';
+}
+
+void Session::add_diagnostics(const Diagnostics& diagnostics) {
+  for (const Finding& finding : diagnostics.findings()) {
+    diagnostics_[finding.name] = {{"count", finding.elements.size()},
+                                  {"elements", first_elements(finding.elements)},
+                                  {"meaning", finding.meaning}};
+    if (finding.elements.empty()) continue;
+    std::string line =
+        "! " + std::to_string(finding.elements.size()) + " " + finding.meaning + " (";
+    for (std::size_t i = 0; i < finding.elements.size() && i < 5; ++i)
+      line += (i > 0 ? ", " : "") + std::to_string(finding.elements[i]);
+    say(line + (finding.elements.size() > 5 ? ", ...)" : ")"));
+  }
+}
+
+Session::Phase::Phase(Session& owner, const char* phase)
+    : session(owner), name(phase), start(std::chrono::steady_clock::now()), line(phase) {}
+
+Session::Phase::~Phase() {
+  session.seconds_of(name) +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double& Session::seconds_of(const std::string& phase) {
+  const auto known = std::find_if(seconds_.begin(), seconds_.end(),
+                                  [&](const auto& entry) { return entry.first == phase; });
+  return known != seconds_.end() ? known->second : seconds_.emplace_back(phase, 0.0).second;
+}
+
+Json Session::snapshot() const {
+  Json object = report_;
+  object["seconds"] = Json::object();
+  for (const auto& [phase, seconds] : seconds_) object["seconds"][phase] = seconds;
+  if (!notes_.empty()) object["notes"] = notes_;
+  object["diagnostics"] = diagnostics_;
+  return object;
+}
+
+void Session::finish() {
+  if (options_.json) {
+    print_json(snapshot());
+    return;
+  }
+  std::string line;
+  for (const auto& [phase, seconds] : seconds_) {
+    char entry[32];
+    std::snprintf(entry, sizeof entry, " %.3g s", seconds);
+    line += (line.empty() ? "time: " : ", ") + phase + entry;
+  }
+  if (!line.empty()) say(line);
+  flush_output();
+}
+
+void print_json(const Json& object) {
+  std::cout << object.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  flush_output();
+}
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  return buffer;
+}
+
+std::string count(std::int64_t n, const std::string& noun) {
+  if (n == 1) return "1 " + noun;
+  if (noun.ends_with("vertex"))
+    return std::to_string(n) + " " + noun.substr(0, noun.size() - 2) + "ices";
+  return std::to_string(n) + " " + noun + "s";
+}
+
+Json first_elements(const std::vector<Index>& elements) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < elements.size() && i < 100; ++i) list.push_back(elements[i]);
+  return list;
+}
+
+}  // namespace carat::cli

@@ -1,0 +1,85 @@
+#pragma once
+// One run of a command: what it reports, and how long its phases take.
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carat/base/diagnostics.h"
+#include "carat/base/types.h"
+#include "cli/progress_line.h"
+
+namespace carat::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// What every command understands.
+struct CommonOptions {
+  bool json = false;
+  int threads = 0;  ///< 0: all the machine has
+};
+
+/// Collects the JSON object of a run, or prints lines for people as they come. Numbers that are
+/// not finite become null in JSON.
+class Session {
+ public:
+  Session(const std::string& command, const CommonOptions& options);
+
+  int threads() const { return options_.threads; }
+  /// The JSON object. Filled in both modes; printed by finish() in one.
+  Json& report() { return report_; }
+  /// A line on standard output, unless JSON is asked for.
+  void say(const std::string& line);
+  /// A message on standard error, also listed under "notes".
+  void note(const std::string& message);
+  /// Findings: all of them in JSON, those that found something as lines.
+  void add_diagnostics(const Diagnostics& diagnostics);
+
+  /// Runs `work` as a named phase: timed, and shown on a terminal while it lasts. Phases of the
+  /// same name add up.
+  template <class Work>
+  auto phase(const char* name, Work&& work) {
+    const Phase running(*this, name);
+    return std::forward<Work>(work)();
+  }
+
+  /// The object as it would be printed now.
+  Json snapshot() const;
+  /// Prints the JSON object, or the line of times.
+  /// \throws IoError  standard output cannot be written
+  void finish();
+
+ private:
+  struct Phase {
+    Phase(Session& session, const char* name);
+    ~Phase();
+    Phase(const Phase&) = delete;
+    Phase& operator=(const Phase&) = delete;
+    Session& session;
+    const char* name;
+    std::chrono::steady_clock::time_point start;
+    ProgressLine line;
+  };
+  double& seconds_of(const std::string& phase);
+
+  CommonOptions options_;
+  Json report_;
+  std::vector<std::pair<std::string, double>> seconds_;
+  Json notes_ = Json::array();
+  Json diagnostics_ = Json::object();
+};
+
+/// Prints an object on standard output.
+/// \throws IoError  it cannot be written
+void print_json(const Json& object);
+
+/// Text of a number for people: six digits.
+std::string text(double value);
+/// "1 face", "2 faces".
+std::string count(std::int64_t n, const std::string& noun);
+/// The first hundred entries: enough to find the spot, small enough to read.
+Json first_elements(const std::vector<Index>& elements);
+
+}  // namespace carat::cli
