@@ -73,7 +73,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
   app.add_option("OUT", options->output, "The file to write; its extension names the format")
       ->required();
   app.add_flag("--dual", options->dual,
-               "Write the dual: a vertex a face, a polygon a vertex; the boundary is kept");
+               "Write the dual: a vertex a face, a polygon a vertex; the\nboundary is kept");
   app.add_flag("--triangulate", options->triangulate,
                "Cut faces into triangles; with --dual, those of the dual");
   return [options](Session& session) { run(session, *options); };

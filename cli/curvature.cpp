@@ -48,11 +48,11 @@ std::function<void(Session&)> declare(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("MESH", options->input, "The mesh")->required();
   app.add_flag("--signed", options->with_sign,
-               "Positive where the surface bends away from its normals: +1/R on a sphere of "
-               "radius R with outward normals");
+               "Positive where the surface bends away from its normals:\n"
+               "+1/R on a sphere of radius R with outward normals");
   app.add_option("-o,--output", options->output,
-                 "File for the mesh with the field mean_curvature, or a view (.html); without it "
-                 "nothing is written");
+                 "File for the mesh with the field mean_curvature, or a\n"
+                 "view (.html); without it nothing is written");
   declare_operator_options(app, options->discretization);
   return [options](Session& session) { run(session, *options); };
 }

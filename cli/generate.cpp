@@ -39,10 +39,10 @@ std::function<void(Session&)> declare(CLI::App& app) {
   app.add_option("--level", options->shape.level, "Each level halves the edge length; 0, 1, 2, ...")
       ->required();
   app.add_option("--jitter", options->shape.jitter,
-                 "Random displacement of inner vertices, 0 to 0.5 of the shortest edge at each")
+                 "Random displacement of inner vertices, 0 to 0.5 of the\nshortest edge at each")
       ->capture_default_str();
   app.add_option("--anisotropy", options->shape.anisotropy,
-                 "1 or more: vertices are drawn together along one direction")
+                 "1 or more: vertices are drawn together along one\ndirection")
       ->capture_default_str();
   app.add_option("--seed", options->shape.seed, "Of everything random")->capture_default_str();
   app.add_option("-o,--output", options->output, "File to write, or a view where it ends in .html")

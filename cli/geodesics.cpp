@@ -92,18 +92,21 @@ std::function<void(Session&)> declare(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("MESH", options->input, "The mesh")->required();
   app.add_option("--source", options->sources,
-                 "Vertex to measure from, counted from 0; repeat it for the nearest of several")
+                 "Vertex to measure from, counted from 0; repeat it for\n"
+                 "the nearest of several")
       ->required()
       ->allow_extra_args(false);
   app.add_option("--t-coef", options->t_coef,
-                 "Time step t = t_coef h^2 of the heat; smaller is sharper, larger smoother")
+                 "Time step t = t_coef h^2 of the heat; a smaller one is\n"
+                 "sharper, a larger one smoother")
       ->capture_default_str();
   app.add_option("--edge-length", options->edge_length, "The h of the time step")
       ->check(CLI::IsMember({"max", "mean"}))
       ->capture_default_str();
   app.add_option("-o,--output", options->output,
-                 "File for the mesh with the fields distance (vertices) and direction (faces), or "
-                 "a view (.html); without it nothing is written");
+                 "File for the mesh with the fields distance (vertices)\n"
+                 "and direction (faces), or a view (.html); without it\n"
+                 "nothing is written");
   declare_operator_options(app, options->discretization);
   return [options](Session& session) { run(session, *options); };
 }

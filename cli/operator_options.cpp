@@ -52,13 +52,15 @@ void declare_operator_options(CLI::App& app, OperatorOptions& options) {
       ->capture_default_str()
       ->group("Operator");
   app.add_option("--virtual-point", options.virtual_point,
-                 "Where a face's virtual vertex lies: least squared area of the virtual "
-                 "triangles, mean of the vertices, least trace of the stiffness")
+                 "Where a face's virtual vertex lies: least squared area of\n"
+                 "the virtual triangles, mean of the vertices, or least\n"
+                 "trace of the stiffness")
       ->check(CLI::IsMember(names(kVirtualPoints)))
       ->capture_default_str()
       ->group("Operator");
   app.add_option("--weights", options.weights,
-                 "Which affine weights give that point on faces that are not planar")
+                 "Which affine weights give that point on faces that are\n"
+                 "not planar")
       ->check(CLI::IsMember(names(kWeights)))
       ->capture_default_str()
       ->group("Operator");
@@ -89,7 +91,8 @@ Discretization discretize(Session& session, const PolygonMesh& mesh, const Opera
   nnz["stiffness"] = discretization.stiffness.nonZeros();
   nnz["mass"] = discretization.mass.nonZeros();
   if (discretization.gradient_dimension > 0)
-    nnz["gradient"] = nnz["divergence"] = discretization.gradient.nonZeros();
+    for (const char* const name : {"gradient", "divergence"})
+      nnz[name] = discretization.gradient.nonZeros();
   session.report()["sizes"]["samples"] = discretization.n_samples();
   session.report()["sizes"]["gradient_dimension"] = discretization.gradient_dimension;
   session.say("operator " + discretization.name + ": " + count(discretization.n_vertices(), "row") +

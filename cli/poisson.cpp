@@ -19,7 +19,8 @@ namespace {
 
 struct Options {
   std::string input, output;
-  std::string rhs, dirichlet, dirichlet_where, neumann, robin, coefficient, exact;
+  std::string rhs;
+  std::optional<std::string> dirichlet, dirichlet_where, neumann, robin, coefficient, exact;
   OperatorOptions discretization;
 };
 
@@ -30,8 +31,8 @@ struct Data {
 
   explicit Data(const Options& options) : rhs("--rhs", options.rhs) {
     const auto parse = [](std::optional<Expression>& target, const char* name,
-                          const std::string& text) {
-      if (!text.empty()) target.emplace(name, text);
+                          const std::optional<std::string>& text) {
+      if (text) target.emplace(name, *text);
     };
     parse(dirichlet, "--dirichlet", options.dirichlet);
     parse(dirichlet_where, "--dirichlet-where", options.dirichlet_where);
@@ -195,23 +196,25 @@ void run(Session& session, const Options& options) {
 std::function<void(Session&)> declare(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("MESH", options->input, "The mesh")->required();
-  const auto add = [&](const char* name, std::string& target, const char* description) {
+  const auto add = [&](const char* name, auto& target, const char* description) {
     return app.add_option(name, target, description)->type_name("EXPR");
   };
   add("--rhs", options->rhs, "f, at the vertices")->required();
   add("--dirichlet", options->dirichlet, "u at the boundary vertices");
   add("--dirichlet-where", options->dirichlet_where,
-      "Only at those boundary vertices where this is not 0, e.g. \"x < 0.001\"");
+      "Only at those boundary vertices where this is not 0,\n"
+      "e.g. \"x < 0.001\"");
   add("--neumann", options->neumann,
-      "Outward flux K du/dn at the midpoints of the other boundary edges; without it, 0");
+      "Outward flux K du/dn at the midpoints of the other\nboundary edges; without it, 0");
   add("--robin", options->robin,
-      "alpha >= 0: K du/dn + alpha u = g on those edges, g given by --neumann");
+      "alpha >= 0: K du/dn + alpha u = g on those edges, g given\nby --neumann");
   add("--coefficient", options->coefficient,
-      "K > 0, at the centroids of the samples; without it, 1");
+      "K > 0, at the centroids of the gradient samples; without\nit, 1");
   add("--exact", options->exact, "Compare u with this and print the error norms");
   app.add_option("-o,--output", options->output,
-                 "File for the mesh with the fields u and gradient, and error with --exact, or a "
-                 "view (.html); without it nothing is written");
+                 "File for the mesh with the fields u and gradient, and\n"
+                 "error with --exact, or a view (.html); without it\n"
+                 "nothing is written");
   declare_operator_options(app, options->discretization);
   return [options](Session& session) { run(session, *options); };
 }
