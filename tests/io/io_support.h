@@ -42,6 +42,8 @@ class TemporaryFolder {
 
 inline std::filesystem::path write_bytes(const std::filesystem::path& path,
                                          std::string_view bytes) {
+  // Some file systems flush a file that is cut to nothing and written again: slow in a loop.
+  std::filesystem::remove(path);
   std::ofstream stream(path, std::ios::binary);
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   return path;

@@ -41,11 +41,20 @@ TEST(ReadObj, UnderstandsAllFormsOfFaces) {
 
 TEST(ReadObj, RoundsNumbersCorrectly) {
   const SurfaceData data = read_text_as("a.obj",
-                                        "v 0.1 1e-400 -1e-400\nv 9007199254740993 1e23 4.9e-324\n"
-                                        "v 2.2250738585072011e-308 0x1 1\n"
-                                        "v 0 0 0\n" +
-                                            std::string());
-  EXPECT_EQ(data.mesh.n_vertices(), 4);
+                                        "v 0.1 1e-400 -1e-400\n"
+                                        "v 9007199254740993 1e23 4.9e-324\n"
+                                        "v 2.2250738585072011e-308 8.5e15 123456789012345678\n");
+  const std::vector<double> expected = {0.1,
+                                        0.0,
+                                        -0.0,
+                                        9007199254740992.0,
+                                        1e23,
+                                        5e-324,
+                                        2.2250738585072011e-308,
+                                        8.5e15,
+                                        123456789012345680.0};
+  ASSERT_EQ(data.mesh.n_vertices(), 3);
+  EXPECT_TRUE(same_bits(data.mesh.points().data(), expected.data(), expected.size()));
 }
 
 TEST(ReadOff, PassesOverExtraColumns) {

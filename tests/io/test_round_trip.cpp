@@ -99,12 +99,14 @@ TEST(Formats, KeepNonFiniteFieldValues) {
   }
 }
 
-TEST(Formats, EscapeFieldNames) {
+TEST(Formats, ReplaceWhatANameCannotHold) {
   const TemporaryFolder folder;
   const Field field{"a <b> \"c\" & d", 1, std::vector<double>(8, 2.0)};
+  const Field alike{"a >b> \"c\" & d", 1, std::vector<double>(8, 3.0)};
   for (const char* name : {"a.vtp", "a.vtu"}) {
-    write_surface(folder / name, awkward_mesh(), {{field}, {}});
-    expect_same_fields(read_surface(folder / name).fields.vertex, {field});
+    write_surface(folder / name, awkward_mesh(), {{field, alike}, {}});
+    expect_same_fields(read_surface(folder / name).fields.vertex,
+                       {{"a _b_ _c_ _ d", 1, field.values}, {"a _b_ _c_ _ d_", 1, alike.values}});
   }
   // A PLY name has no blanks and is no coordinate.
   const Field x{"x", 1, std::vector<double>(8, 3.0)};

@@ -12,6 +12,7 @@ namespace carat::detail {
 struct FileContent {
   std::filesystem::path path;
   std::string_view bytes;
+  std::size_t start = 0;  ///< where the bytes begin in the file: behind a byte order mark
 };
 
 /// One format. A new one is a file that defines `<name>_format()` and a line in formats.def.

@@ -148,7 +148,7 @@ SurfaceData read_surface(const fs::path& path) {
     std::string_view content(bytes.data(), bytes.size());
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
-    const FileContent file{path, content};
+    const FileContent file{path, content, bytes.size() - content.size()};
     return find_format(file).read(file);
   });
 }

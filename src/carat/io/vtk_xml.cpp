@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "carat/base/error.h"
@@ -73,11 +74,21 @@ vtkSmartPointer<ArrayType> share(const T* values, std::size_t n, int components 
   return array;
 }
 
+/// A name that VTK can write: its writers do not escape what means something in XML.
+std::string xml_name(std::string name, vtkDataSetAttributes* attributes) {
+  for (char& c : name)
+    if (std::string_view("<>&\"'").find(c) != std::string_view::npos ||
+        static_cast<unsigned char>(c) < ' ')
+      c = '_';
+  while (attributes->HasArray(name.c_str()) != 0) name += '_';
+  return name;
+}
+
 void share_fields(vtkDataSetAttributes* attributes, const std::vector<Field>& fields) {
   for (const Field& field : fields) {
     const auto array =
         share<vtkDoubleArray>(field.values.data(), field.values.size(), field.components);
-    array->SetName(field.name.c_str());
+    array->SetName(xml_name(field.name, attributes).c_str());
     attributes->AddArray(array);
   }
 }
