@@ -19,7 +19,7 @@ using Faces = std::vector<std::vector<Index>>;
 
 Points line_of_points(Index n) {
   Points points(n, 3);
-  for (Index v = 0; v < n; ++v) points.row(v) << v, v * v, 1;
+  for (Index v = 0; v < n; ++v) points.row(v) << v, double(v) * v, 1;
   return points;
 }
 
