@@ -123,32 +123,55 @@ function isArrow(values: Float32Array, row: number): boolean {
   return length > 0 && Number.isFinite(length);
 }
 
-/** One row a cell of a grid over the ball of radius 1, on the finest grid with few enough. */
+/** Rows that keep a distance of each other: the smallest distance that leaves few enough. */
 function chooseEvenly(
   origins: Float32Array,
   values: Float32Array,
 ): { rows: Uint32Array; spacing: number } {
   for (let n = 128; ; n = Math.floor(0.8 * n)) {
-    const taken = new Uint8Array(n * n * n);
-    const rows = new Uint32Array(maxGlyphs);
-    let nTaken = 0;
-    const cell = (x: number): number => Math.min(n - 1, Math.floor(((x + 1) / 2) * n));
-    for (let row = 0; row < origins.length / 3 && nTaken <= maxGlyphs; ++row) {
-      const o = 3 * row;
-      const at = (cell(origins[o]) * n + cell(origins[o + 1])) * n + cell(origins[o + 2]);
-      if (taken[at] || !isArrow(values, row)) continue;
-      taken[at] = 1;
-      if (nTaken < maxGlyphs) rows[nTaken] = row;
-      ++nTaken;
-    }
-    if (nTaken <= maxGlyphs || n < 4)
-      return { rows: rows.slice(0, Math.min(nTaken, maxGlyphs)), spacing: spacing(nTaken, n) };
+    const rows = chooseApart(origins, values, n);
+    if (rows.length <= maxGlyphs || n < 4) return { rows, spacing: spacing(rows.length, n) };
   }
+}
+
+/**
+ * Rows at least 1 / n of the ball's diameter apart, in order; gives up beyond maxGlyphs. A grid of
+ * n cells a side holds one row a cell, so that only the 27 cells about a row are looked at.
+ */
+function chooseApart(origins: Float32Array, values: Float32Array, n: number): Uint32Array {
+  const side = n + 2;
+  const rowInCell = new Int32Array(side * side * side).fill(-1);
+  const rows = new Uint32Array(maxGlyphs + 1);
+  const apart = 2 / n;
+  let nRows = 0;
+  const place = (x: number): number => 1 + Math.min(n - 1, Math.floor(((x + 1) / 2) * n));
+  const isFree = (cell: number, o: number): boolean => {
+    for (let dx = -side * side; dx <= side * side; dx += side * side)
+      for (let dy = -side; dy <= side; dy += side)
+        for (let dz = -1; dz <= 1; ++dz) {
+          const other = 3 * rowInCell[cell + dx + dy + dz];
+          if (other < 0) continue;
+          const x = origins[other] - origins[o];
+          const y = origins[other + 1] - origins[o + 1];
+          const z = origins[other + 2] - origins[o + 2];
+          if (x * x + y * y + z * z < apart * apart) return false;
+        }
+    return true;
+  };
+  for (let row = 0; row < origins.length / 3 && nRows <= maxGlyphs; ++row) {
+    const o = 3 * row;
+    const cell =
+      (place(origins[o]) * side + place(origins[o + 1])) * side + place(origins[o + 2]);
+    if (rowInCell[cell] >= 0 || !isArrow(values, row) || !isFree(cell, o)) continue;
+    rowInCell[cell] = row;
+    rows[nRows++] = row;
+  }
+  return rows.slice(0, nRows);
 }
 
 /** On a coarse mesh the grid is finer than the mesh, so count the arrows as well. */
 function spacing(nArrows: number, nCells: number): number {
-  return Math.min(0.3, Math.max(2 / nCells, 2 / Math.sqrt(Math.max(nArrows, 1))));
+  return Math.min(0.3, Math.max(2 / nCells, 1.6 / Math.sqrt(Math.max(nArrows, 1))));
 }
 
 /** The length that 95 % of the arrows do not exceed. */

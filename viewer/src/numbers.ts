@@ -28,9 +28,9 @@ export function count(n: number): string {
 }
 
 /** Round numbers inside [low, high], about `n` of them. */
-export function ticks(low: number, high: number, n: number): number[] {
+function roundTicks(low: number, high: number, n: number): number[] {
   const span = high - low;
-  if (!(span > 0) || !Number.isFinite(span)) return [low];
+  if (!Number.isFinite(span)) return [];
   const power = 10 ** Math.floor(Math.log10(span / n));
   const step = power * ([1, 2, 2.5, 5, 10].find((m) => span / (m * power) <= n) ?? 10);
   const result: number[] = [];
@@ -40,4 +40,12 @@ export function ticks(low: number, high: number, n: number): number[] {
     if (result.length > 4 * n) break;
   }
   return result;
+}
+
+/** Both ends, and about `n` round numbers between them that leave room for their labels. */
+export function ticks(low: number, high: number, n: number): number[] {
+  const room = (high - low) / 8;
+  if (!(room > 0)) return [low];
+  const inner = roundTicks(low, high, n).filter((t) => t - low > room && high - t > room);
+  return [low, ...inner, high];
 }
