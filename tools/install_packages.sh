@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# Installs what is missing of the packages in the named groups: build, test.
+# CARAT_SKIP_PACKAGES=1 leaves the system as it is, for machines that have everything by other means.
+set -euo pipefail
+
+# Libraries are looked for as Debian packages, tools (tool:package) on the PATH.
+build=(libeigen3-dev libsuitesparse-dev libopenblas-dev libmetis-dev libvtk9-dev libmuparser-dev
+       libcli11-dev nlohmann-json3-dev zlib1g-dev glmark2-data ca-certificates cmake:cmake
+       ninja:ninja-build g++:g++ node:nodejs npm:npm python3:python3)
+test=(libgtest-dev fonts-dejavu-core chromium:chromium)
+
+wanted=()
+for group in "$@"; do
+  case $group in
+    build) wanted+=("${build[@]}") ;;
+    test) wanted+=("${test[@]}") ;;
+    *) echo "install_packages.sh: error: no group '$group'; there are build and test" >&2; exit 2 ;;
+  esac
+done
+[[ ${CARAT_SKIP_PACKAGES:-} == 1 ]] && exit 0
+
+libraries=() missing=()
+for entry in "${wanted[@]}"; do
+  if [[ $entry != *:* ]]; then
+    libraries+=("$entry")
+  elif ! command -v "${entry%%:*}" >/dev/null; then
+    missing+=("${entry#*:}")
+  fi
+done
+installed=$(dpkg-query --show --showformat '${Package} ${db:Status-Status}\n' "${libraries[@]}" \
+              2>/dev/null || true)
+for library in "${libraries[@]}"; do
+  grep -qx "$library installed" <<<"$installed" || missing+=("$library")
+done
+((${#missing[@]} == 0)) && exit 0
+
+refuse() {
+  {
+    echo "Some packages are missing, and $1."
+    echo "Install these (names as in Debian 12), then start again:"
+    echo "  ${missing[*]}"
+    echo "If you have them by other means, set CARAT_SKIP_PACKAGES=1."
+  } >&2
+  exit 1
+}
+command -v apt-get >/dev/null || refuse "there is no apt here"
+as_root=()
+if ((EUID != 0)); then
+  command -v sudo >/dev/null || refuse "installing them takes root or sudo"
+  as_root=(sudo)
+fi
+
+echo "Installing ${missing[*]}" >&2
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get --quiet --yes)
+{
+  "${apt[@]}" update
+  "${apt[@]}" install --no-install-recommends "${missing[@]}"
+} >&2 </dev/null || refuse "apt could not install them (see above)"
