@@ -12,6 +12,8 @@
 
 #include "carat/base/error.h"
 #include "carat/generators/families.h"
+#include "carat/generators/lattice.h"
+#include "carat/generators/zigzag.h"
 #include "carat/mesh/statistics.h"
 
 namespace carat {
@@ -323,6 +325,23 @@ TEST(Families, MeansOfConcaveFacesLieInTheKernelWithoutJitter) {
           (mesh.point(face[i]) - mean).cross(mesh.point(face[(i + 1) % face.size()]) - mean).z(),
           0);
   }
+}
+
+TEST(Zigzag, ColoursSayWhichSidesBendInwards) {
+  constexpr Index n = 4;
+  const ZigzagQuads cells = zigzag_quads(square_quads(n, 1), checkerboard(1, n));
+  for (Index j = 1; j + 1 < n; ++j)
+    for (Index i = 1; i + 1 < n; ++i) {
+      const Index f = j * n + i;
+      const auto face = cells.mesh.face(f);
+      ASSERT_EQ(face.size(), 8u);
+      for (Index side = 0; side < 4; ++side) {
+        const Vec3 kink = cells.mesh.point(face[2 * side + 1]);
+        const Vec3 centre = cells.centres.row(f).transpose();
+        const bool inwards = (kink - centre).norm() < 0.5 / n;
+        EXPECT_EQ(inwards, side % 2 == (i + j) % 2) << "face " << f << " side " << side;
+      }
+    }
 }
 
 // ---- jitter, anisotropy, seed --------------------------------------------------------------

@@ -139,6 +139,17 @@ TEST(Triangulate, NonConvexPolygonsAreCoveredOnce) {
   }
 }
 
+TEST(Triangulate, EarsThatHoldAReflexCornerAreNotCut) {
+  // A notch from far away ends inside the triangle of the shortest diagonal.
+  expect_covered_once(one_polygon({{0, 0}, {1, 0}, {10, 9}, {0.2, 0.2}, {9, 10}, {0, 1}}));
+  std::uint32_t state = 3;
+  for (int round = 0; round < 200; ++round)
+    expect_covered_once(one_polygon(polar(5 + round % 60, [&](double) {
+      state = state * 1664525u + 1013904223u;
+      return 0.05 + (state >> 8) * 0x1p-24;
+    })));
+}
+
 TEST(Triangulate, StraightCornersLeaveNoEmptyTriangle) {
   // An L with ten straight corners a side.
   const std::vector<Vec2> corners{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
@@ -153,10 +164,9 @@ TEST(Triangulate, StraightCornersLeaveNoEmptyTriangle) {
 
 TEST(Triangulate, FacesWithoutAPlaneAreCutAsAFan) {
   const std::set<std::set<Index>> fan{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
-  // A pentagram turns twice; points on a line have no plane.
-  std::vector<Vec2> star;
-  for (int i = 0; i < 5; ++i)
-    star.emplace_back(std::cos(4 * M_PI * i / 5), std::sin(4 * M_PI * i / 5));
+  // A pentagon that turns twice, with convex corners alone; points on a line have no plane.
+  const std::vector<Vec2> star{
+      {-0.76, 0.44}, {0.28, -0.76}, {0.13, 0.52}, {-0.64, -0.55}, {0.93, 0.09}};
   EXPECT_EQ(face_sets(triangulate(one_polygon(star))), fan);
   EXPECT_EQ(face_sets(triangulate(one_polygon({{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}}))), fan);
   EXPECT_EQ(face_sets(triangulate(one_polygon({{0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}}))), fan);
