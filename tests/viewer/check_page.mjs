@@ -94,7 +94,7 @@ page.on('request', (request) => requests.push(request.url()));
 async function look() {
   await page.waitForTimeout(250);
   const box = await page.locator('#canvas').boundingBox();
-  const clip = { x: box.x + 10, y: box.y + 10, width: box.width - 20, height: box.height - 100 };
+  const clip = { x: box.x + 10, y: box.y + 10, width: box.width - 20, height: box.height - 20 };
   return decodePng(await page.screenshot({ clip }));
 }
 
@@ -236,12 +236,9 @@ const checks = {
     assert.ok(change(before, await look()) > 0.3);
   },
   async 'the second mesh has no fields'() {
-    const before = await look();
     await page.click('.meshes button:has-text("drum")');
     await ready();
-    const after = await look();
-    assert.ok(change(before, after) > 0.1);
-    assert.ok(drawn(after) > 0.1);
+    assert.ok(drawn(await look()) > 0.1);
     assert.ok(await page.locator('#legend').isHidden());
     assert.match(await page.innerText('#info'), /24 vertices, 36 edges, 14 faces/);
   },

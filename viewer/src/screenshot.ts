@@ -1,6 +1,9 @@
 import { drawBar, type LegendState } from './legend';
 import type { View } from './view';
 
+/** Below the mesh, in CSS pixels. */
+const legendHeight = 68;
+
 function drawLegend(
   context: CanvasRenderingContext2D,
   legend: LegendState,
@@ -11,7 +14,7 @@ function drawLegend(
   const barWidth = Math.min(420 * ratio, 0.8 * width);
   const barHeight = 14 * ratio;
   const x = (width - barWidth) / 2;
-  const y = height - 46 * ratio;
+  const y = height - 40 * ratio;
   drawBar(context, legend, x, y, barWidth, barHeight);
   context.fillStyle = ink;
   context.textAlign = 'center';
@@ -28,20 +31,15 @@ export function takePicture(view: View, legend: LegendState | null): Promise<Blo
   const source = view.renderer.domElement;
   const picture = document.createElement('canvas');
   picture.width = source.width;
-  picture.height = source.height;
+  const ratio = view.renderer.getPixelRatio();
+  picture.height = source.height + (legend ? legendHeight * ratio : 0);
   const context = picture.getContext('2d');
   if (!context) return Promise.reject(new Error('The browser cannot draw a picture.'));
   const style = getComputedStyle(document.documentElement);
   context.fillStyle = style.getPropertyValue('--background');
   context.fillRect(0, 0, picture.width, picture.height);
   context.drawImage(source, 0, 0);
-  if (legend)
-    drawLegend(
-      context,
-      legend,
-      view.renderer.getPixelRatio(),
-      style.getPropertyValue('--ink'),
-    );
+  if (legend) drawLegend(context, legend, ratio, style.getPropertyValue('--ink'));
   return new Promise((resolve, reject) =>
     picture.toBlob((blob) => {
       if (blob) resolve(blob);

@@ -72,6 +72,7 @@ export class View {
 
   /** Shows all of the mesh, from the default side. */
   fit(mesh: Mesh, up?: Axis): void {
+    this.resize();
     const { box } = mesh;
     const pose = up ? poseAbout(up, 0.35) : defaultPose(box);
     this.camera.up.copy(axes[pose.up]);
@@ -180,7 +181,7 @@ export class View {
 
   /** Smallest distance at which every vertex is in sight, with a margin. */
   private fittingDistance(mesh: Mesh, centre: Vector3): number {
-    const margin = 1.18;
+    const margin = 1.1;
     const upTangent = Math.tan((fieldOfView * Math.PI) / 360) / margin;
     const sideTangent = upTangent * this.camera.aspect;
     const toCamera = this.camera.matrixWorld.clone().setPosition(0, 0, 0).invert();
