@@ -188,6 +188,10 @@ std::vector<BadFile> bad_files() {
        {"damaged"}},
       {"vtu_fewer_types", "a.vtu", replaced(text_vtu(), "3 9 5</Data", "3 9</Data"), {"damaged"}},
       // Other contents
+      {"vtp_unreadable_array",
+       "a.vtp",
+       replaced(text_vtp(), ">7 8 9<", ">Arr7 8 9<"),
+       {"array", "damaged"}},
       {"vtu_volume",
        "a.vtu",
        replaced(replaced(text_vtu(), "3 9 5</Data", "3 10 5</Data"), "0 1 3 2", "0 1 3 2"),

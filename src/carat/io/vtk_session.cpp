@@ -6,7 +6,6 @@
 #include <vtkLogger.h>
 #include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
-#include <vtkXMLReader.h>
 
 #include <algorithm>
 #include <mutex>
@@ -92,11 +91,6 @@ void VtkSession::watch(vtkAlgorithm* algorithm) {
     algorithm->AddObserver(event, state_->observer);
     algorithm->GetExecutive()->AddObserver(event, state_->observer);
   }
-}
-
-void VtkSession::watch_reader(vtkXMLReader* reader) {
-  watch(reader);
-  reader->SetParserErrorObserver(state_->observer);
 }
 
 const std::string& VtkSession::first_error() const { return state_->observer->first_error; }

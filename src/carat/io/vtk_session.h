@@ -6,7 +6,6 @@
 
 class vtkAlgorithm;
 class vtkCommand;
-class vtkXMLReader;
 
 namespace carat::detail {
 
@@ -20,7 +19,6 @@ class VtkSession {
   VtkSession& operator=(const VtkSession&) = delete;
 
   void watch(vtkAlgorithm* algorithm);
-  void watch_reader(vtkXMLReader* reader);
   /// For objects that want an observer set.
   vtkCommand* observer() const;
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "carat/base/error.h"
 #include "carat/io/format.h"
 #include "carat/io/vtk_cells.h"
 
@@ -27,8 +28,30 @@ std::string_view vtk_file_type(std::string_view content);
 /// \throws IoError  malformed XML, another type, impossible sizes
 void check_vtk_xml(const FileContent& file, const char* type, VtkSession& session);
 
-/// Runs the reader and checks points and attributes.
-void run_vtk_reader(vtkXMLReader* reader, const FileContent& file, VtkSession& session);
+/// A reader of VTK that tells whether it failed, which VTK itself only prints.
+template <class Reader>
+class VtkXmlReader : public Reader {
+ public:
+  static VtkXmlReader* New() {
+    auto* const reader = new VtkXmlReader;
+    reader->InitializeObjectBase();
+    return reader;
+  }
+  bool failed() const { return this->DataError != 0 || this->InformationError != 0; }
+};
+
+/// Runs the reader in silence; see VtkXmlReader::failed for how it went.
+void run_vtk_reader(vtkXMLReader* reader, const FileContent& file);
+
+/// Runs the reader.
+/// \throws IoError  if it fails
+template <class Reader>
+void run_vtk_reader(VtkXmlReader<Reader>* reader, const FileContent& file) {
+  run_vtk_reader(static_cast<vtkXMLReader*>(reader), file);
+  if (reader->failed())
+    throw IoError(
+        "an array of it cannot be read; the file is truncated or damaged, export it again");
+}
 
 /// Adds all cells of a list, as cells of one type or of types[i].
 void add_cells(VtkCellFaces& faces, vtkCellArray* cells, vtkIdType n_points, int type,

@@ -22,8 +22,8 @@ bool recognises_vtp(std::string_view content) {
 SurfaceData read_vtp(const FileContent& file) {
   VtkSession session;
   check_vtk_xml(file, "PolyData", session);
-  vtkNew<vtkXMLPolyDataReader> reader;
-  run_vtk_reader(reader, file, session);
+  vtkNew<VtkXmlReader<vtkXMLPolyDataReader>> reader;
+  run_vtk_reader(reader.Get(), file);
   vtkPolyData* const data = reader->GetOutput();
   const vtkIdType n_points = data->GetNumberOfPoints();
   VtkCellFaces faces;

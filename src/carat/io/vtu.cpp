@@ -24,8 +24,8 @@ bool recognises_vtu(std::string_view content) {
 SurfaceData read_vtu(const FileContent& file) {
   VtkSession session;
   check_vtk_xml(file, "UnstructuredGrid", session);
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
-  run_vtk_reader(reader, file, session);
+  vtkNew<VtkXmlReader<vtkXMLUnstructuredGridReader>> reader;
+  run_vtk_reader(reader.Get(), file);
   vtkUnstructuredGrid* const data = reader->GetOutput();
   VtkCellFaces faces;
   if (vtkCellArray* const cells = data->GetCells()) {
