@@ -1,6 +1,7 @@
 // No claim runs on fewer cases than it should: the registered cases are counted against the
 // registries. Exclusions are listed with their reason.
 
+#include <cstdio>
 #include <map>
 #include <set>
 
@@ -31,9 +32,9 @@ std::map<std::string, int> registered_cases() {
   const testing::UnitTest& all = *testing::UnitTest::GetInstance();
   for (int s = 0; s < all.total_test_suite_count(); ++s) {
     const testing::TestSuite& suite = *all.GetTestSuite(s);
+    if (std::string(suite.name()).rfind("Claims/", 0) != 0) continue;
     for (int t = 0; t < suite.total_test_count(); ++t) {
       const testing::TestInfo& info = *suite.GetTestInfo(t);
-      if (info.value_param() == nullptr) continue;
       const std::string test = info.name();
       const std::string claim =
           std::string(suite.name()).substr(std::string(suite.name()).find('/') + 1) + "." +
@@ -91,6 +92,7 @@ TEST(CaseCounts, every_claim_runs_on_every_case) {
       {"HarmonicsFull.third_degree_on_the_sphere", 2 * sphere_pairs},
       {"CurvatureFull.unit_sphere", 2 * sphere_pairs},
       {"GeodesicsFull.unit_sphere", 2 * sphere_pairs},
+      {"GeodesicsFull.unit_sphere_with_a_long_time_step", 2 * sphere_pairs},
   };
   EXPECT_EQ(registered_cases(), expected);
   int total = 0;

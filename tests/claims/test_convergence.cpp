@@ -1,12 +1,14 @@
 // Orders of convergence: slopes of log(error) over log(mean edge length) of the last three of four
 // levels, on regular and jittered meshes. Every case prints one line and records its values.
 
+#include <algorithm>
 #include <cstdio>
 #include <numeric>
 
 #include "carat/apps/heat_geodesics.h"
 #include "carat/apps/mean_curvature.h"
 #include "carat/apps/poisson.h"
+#include "claims/convergence_bounds.h"
 #include "support/claim_cases.h"
 #include "support/franke.h"
 #include "support/measures.h"
@@ -47,6 +49,17 @@ class Convergence : public testing::TestWithParam<ClaimCase> {
   std::string key() const {
     return std::string(GetParam().entry->name) + " " + GetParam().family +
            (GetParam().options.jitter > 0 ? " jittered" : "");
+  }
+  void expect_recorded_bound(const char* problem) {
+    for (const ConvergenceBound& bound : kConvergenceBounds) {
+      if (bound.problem != std::string(problem) || bound.key != key()) continue;
+      report(problem, bound.least_slope);
+      RecordProperty("reason", bound.reason);
+      EXPECT_GE(slope, bound.least_slope);
+      EXPECT_LE(error.back(), bound.largest_error) << bound.reason;
+      return;
+    }
+    ADD_FAILURE() << problem << ": no bound is recorded for '" << key() << "'";
   }
   std::vector<double> h, error;
   double slope = 0;
@@ -121,26 +134,40 @@ TEST_P(CurvatureFull, unit_sphere) {
     const Vector e = mean_curvature(mesh, d, true).values - Vector::Ones(mesh.n_vertices());
     return std::sqrt(e.squaredNorm() / mesh.n_vertices());
   });
-  report("curvature", 0);
+  expect_recorded_bound("curvature");
 }
 
 INSTANTIATE_TEST_SUITE_P(Claims, CurvatureFull, testing::ValuesIn(convergence_cases("unit sphere")),
                          case_name);
 
-class GeodesicsFull : public Convergence {};
+class GeodesicsFull : public Convergence {
+ protected:
+  void measure_distances(double t_coef) {
+    measure([t_coef](const PolygonMesh& mesh, const Discretization& d) {
+      const Vector distance = HeatGeodesics(mesh, d, {.t_coef = t_coef}).distance(0).values;
+      double sum = 0;
+      for (Index v = 0; v < mesh.n_vertices(); ++v) {
+        const Vec3 source = mesh.point(0), x = mesh.point(v);
+        const double exact = std::atan2(source.cross(x).norm(), source.dot(x));
+        sum += (distance[v] - exact) * (distance[v] - exact);
+      }
+      return std::sqrt(sum / mesh.n_vertices());
+    });
+  }
+};
 
 TEST_P(GeodesicsFull, unit_sphere) {
-  measure([](const PolygonMesh& mesh, const Discretization& d) {
-    const Vector distance = HeatGeodesics(mesh, d).distance(0).values;
-    double sum = 0;
-    for (Index v = 0; v < mesh.n_vertices(); ++v) {
-      const Vec3 source = mesh.point(0), x = mesh.point(v);
-      const double exact = std::atan2(source.cross(x).norm(), source.dot(x));
-      sum += (distance[v] - exact) * (distance[v] - exact);
-    }
-    return std::sqrt(sum / mesh.n_vertices());
-  });
-  report("geodesics", 0);
+  measure_distances(1);
+  expect_recorded_bound("geodesics");
+}
+
+TEST_P(GeodesicsFull, unit_sphere_with_a_long_time_step) {
+  // The smoothing of a time t costs an error of the order sqrt(t), h here: first order.
+  constexpr double kFirstOrder = 0.6;
+  measure_distances(16);
+  report("geodes.16", kFirstOrder);
+  EXPECT_GE(slope, kFirstOrder);
+  EXPECT_TRUE(std::is_sorted(error.rbegin(), error.rend()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Claims, GeodesicsFull, testing::ValuesIn(convergence_cases("unit sphere")),

@@ -45,12 +45,13 @@ inline Vector dense_face_weights(const Matrix& x) {
   for (Eigen::Index i = 0; i < n; ++i)
     area += Vec3(centred.row(i).transpose()).cross(Vec3(centred.row((i + 1) % n).transpose()));
   const Vec3 normal = area.normalized();
-  Matrix basis(3, 2);
-  basis << normal.unitOrthogonal(), normal.cross(normal.unitOrthogonal());
+  const Vec3 axis_s = normal.unitOrthogonal(), axis_t = normal.cross(axis_s);
+  const Vec3 point = dense_face_point(centred);
   Matrix constraints(3, n);
-  constraints << Matrix::Ones(1, n), (centred * basis).transpose();
-  Vector target(3);
-  target << 1, basis.transpose() * dense_face_point(centred);
+  constraints.row(0).setOnes();
+  constraints.row(1) = (centred * axis_s).transpose();
+  constraints.row(2) = (centred * axis_t).transpose();
+  const Vector target = Vec3(1, axis_s.dot(point), axis_t.dot(point));
   return constraints.completeOrthogonalDecomposition().solve(target);
 }
 

@@ -26,13 +26,14 @@ void report_degenerate(std::vector<Index> samples, const DiscretizationOptions& 
                        const std::string& kind,
                        const std::function<std::string(Index)>& describe,
                        Diagnostics& diagnostics) {
-  if (options.degenerate == DegeneratePolicy::Strict && !samples.empty())
-    throw DegenerateElement(
+  if (options.degenerate == DegeneratePolicy::Strict && !samples.empty()) {
+    const std::string message =
         kind + " " + std::to_string(samples[0]) + " (" + describe(samples[0]) +
-            ") is degenerate: its measure is below " + number(options.eps_rel) +
-            " of its squared diameter, as for " + std::to_string(samples.size() - 1) +
-            " more; repair the mesh, or use DegeneratePolicy::Report to leave them out",
-        std::move(samples));
+        ") is degenerate: its measure is below " + number(options.eps_rel) +
+        " of its squared diameter, as for " + std::to_string(samples.size() - 1) +
+        " more; repair the mesh, or use DegeneratePolicy::Report to leave them out";
+    throw DegenerateElement(message, std::move(samples));
+  }
   diagnostics.add("excluded_samples",
                   kind + "s whose measure vanishes relative to their size; they contribute nothing",
                   std::move(samples));
