@@ -26,6 +26,18 @@ std::string vtk(const std::string& body, const std::string& encoding = "ASCII") 
   return "# vtk DataFile Version 3.0\nt\n" + encoding + std::string("\n") + body;
 }
 
+/// A compressed VTP file whose first array announces other blocks than it has.
+std::string with_block_header(std::uint32_t n, std::uint32_t size, std::uint32_t last) {
+  for (const SampleFile& sample : sample_files()) {
+    if (sample.name != "vtp_appended") continue;
+    std::string content = sample.content;
+    const std::size_t start = content.find('_', content.find("<AppendedData")) + 1;
+    const std::string header = Bytes(std::endian::native).add(n).add(size).add(last).str();
+    return content.replace(start, header.size(), header);
+  }
+  throw std::out_of_range("vtp_appended");
+}
+
 const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const std::string kHuge = "1000000000000";
 
@@ -188,6 +200,11 @@ std::vector<BadFile> bad_files() {
        {"damaged"}},
       {"vtu_fewer_types", "a.vtu", replaced(text_vtu(), "3 9 5</Data", "3 9</Data"), {"damaged"}},
       // Other contents
+      {"vtp_no_block_size", "a.vtp", with_block_header(1, 0, 24), {"compressed blocks"}},
+      {"vtp_huge_blocks", "a.vtp", with_block_header(4000000000u, 1, 0), {"4000000000 of 1 bytes"}},
+      {"vtp_huge_block", "a.vtp", with_block_header(1, 4000000000u, 0), {"1 of 4000000000 bytes"}},
+      {"vtp_large_last_block", "a.vtp", with_block_header(1, 8, 800), {"compressed blocks"}},
+      {"vtp_no_blocks", "a.vtp", with_block_header(0, 8, 8), {"compressed blocks"}},
       {"vtp_unreadable_array",
        "a.vtp",
        replaced(text_vtp(), ">7 8 9<", ">Arr7 8 9<"),

@@ -16,7 +16,7 @@ struct SurfaceData {
   MeshFields fields;
 };
 
-/// One supported format, e.g. {"ply", "Stanford PLY", {".ply"}, true, true}.
+/// One supported format, e.g. {"ply", "Stanford PLY", {".ply"}, true, true, true}.
 struct FileFormat {
   std::string name;
   std::string title;
@@ -30,17 +30,21 @@ const std::vector<FileFormat>& file_formats();
 
 /// Reads a surface mesh. The format is found from the content where that is telling, else from
 /// the extension. Vertices and faces keep the file's order and number; nothing is triangulated;
-/// STL corners are welded where their coordinates are exactly equal.
+/// STL corners are welded where their coordinates are exactly equal. Of VTK files the 2-D cells
+/// are kept, triangle strips as their triangles; vertices and lines are passed over.
 /// \throws IoError      missing, unreadable, truncated or malformed file, unknown format, a volume
 ///                      mesh; the message names the path and the line or element
 /// \throws InvalidMesh  what the file holds is no mesh (see PolygonMesh); message with the path
 SurfaceData read_surface(const std::filesystem::path& path);
 
 /// Writes a surface mesh, with the fields where the format has them (OBJ, OFF: the mesh alone).
+/// Every double comes back bit by bit. Characters that a field's name cannot have in the format
+/// (blanks in PLY, <>&"' in VTP and VTU) become '_'.
 /// The format is found from the extension. The file appears under its name only when it is
 /// complete: on failure an existing one is untouched.
 /// \throws IoError        unknown extension, or the file cannot be written
-/// \throws InvalidOption  a field whose number of rows does not fit the mesh
+/// \throws InvalidOption  a field whose number of rows does not fit the mesh, without a name, or
+///                        with the name of another one
 void write_surface(const std::filesystem::path& path, const PolygonMesh& mesh,
                    const MeshFields& fields = {});
 
