@@ -66,8 +66,8 @@ TEST_P(Coefficient, values_that_are_not_positive_and_finite_are_refused) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity()})
     EXPECT_THROW(discretize(m, GetParam()->name, with_coefficient([bad](const Vec3& p) {
-                   return p.x() > 0.5 ? bad : 1.0;
-                 })),
+                              return p.x() > 0.5 ? bad : 1.0;
+                            })),
                  InvalidOption)
         << bad;
 }

@@ -174,19 +174,19 @@ INSTANTIATE_TEST_SUITE_P(Claims, GeodesicsFull, testing::ValuesIn(convergence_ca
                          case_name);
 
 TEST(Franke, laplacian_agrees_with_finite_differences) {
-  // Central differences of step s are exact to s^2 f''''/12 ~ 1e-4 * 1e4 / 12 relative to f'' ~ 100.
+  // Central differences of step s are exact to s^2 f''''/12 ~ 1e-4 * 1e4 / 12 relative to f'' ~
+  // 100.
   const double s = 1e-3;
   for (double x = 0.05; x < 1; x += 0.1)
     for (double y = 0.05; y < 1; y += 0.1) {
       const auto f = [&](double dx, double dy) { return franke(Vec3(x + dx, y + dy, 0)); };
-      const double estimate =
-          (f(s, 0) + f(-s, 0) + f(0, s) + f(0, -s) - 4 * f(0, 0)) / (s * s);
+      const double estimate = (f(s, 0) + f(-s, 0) + f(0, s) + f(0, -s) - 4 * f(0, 0)) / (s * s);
       EXPECT_NEAR(franke_laplacian(Vec3(x, y, 0)), estimate, 0.01);
     }
-  EXPECT_NEAR(franke(Vec3(0.5, 0.5, 0)), 0.75 * std::exp(-(2.5 * 2.5 + 2.5 * 2.5) / 4) +
-                                             0.75 * std::exp(-5.5 * 5.5 / 49 - 0.55) +
-                                             0.5 * std::exp(-(2.5 * 2.5 + 1.5 * 1.5) / 4) -
-                                             0.2 * std::exp(-0.25 - 6.25),
+  EXPECT_NEAR(franke(Vec3(0.5, 0.5, 0)),
+              0.75 * std::exp(-(2.5 * 2.5 + 2.5 * 2.5) / 4) +
+                  0.75 * std::exp(-5.5 * 5.5 / 49 - 0.55) +
+                  0.5 * std::exp(-(2.5 * 2.5 + 1.5 * 1.5) / 4) - 0.2 * std::exp(-0.25 - 6.25),
               1e-15);
 }
 

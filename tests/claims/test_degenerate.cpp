@@ -29,16 +29,17 @@ void expect_sound(const Discretization& d) {
 /// Meshes of triangles with something wrong, so that every operator is defined on them.
 std::vector<NamedMesh> degenerate_meshes() {
   return {
-      {"zero_area_triangle", make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 0}},
-                                       {{0, 1, 2}, {1, 3, 2}})},
-      {"collapsed_to_a_point", make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 1, 0},
-                                          {1, 1, 0}},
-                                         {{0, 1, 2}, {3, 4, 5}, {1, 3, 2}})},
-      {"coincident_ends", make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}},
-                                    {{0, 1, 2}, {1, 3, 2}})},
-      {"far_from_the_origin", make_mesh({{1e8, 1e8, 1e8}, {1e8 + 1, 1e8, 1e8}, {1e8, 1e8 + 1, 1e8},
-                                         {1e8 + 0.5, 1e8 + 0.5, 1e8}},
-                                        {{0, 1, 2}, {1, 3, 2}})},
+      {"zero_area_triangle",
+       make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 0}}, {{0, 1, 2}, {1, 3, 2}})},
+      {"collapsed_to_a_point",
+       make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 1, 0}, {1, 1, 0}},
+                 {{0, 1, 2}, {3, 4, 5}, {1, 3, 2}})},
+      {"coincident_ends",
+       make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {1, 3, 2}})},
+      {"far_from_the_origin",
+       make_mesh(
+           {{1e8, 1e8, 1e8}, {1e8 + 1, 1e8, 1e8}, {1e8, 1e8 + 1, 1e8}, {1e8 + 0.5, 1e8 + 0.5, 1e8}},
+           {{0, 1, 2}, {1, 3, 2}})},
   };
 }
 
@@ -65,8 +66,7 @@ TEST_P(Degenerate, strict_names_the_element) {
       ADD_FAILURE() << "nothing was thrown";
     } catch (const DegenerateElement& e) {
       ASSERT_FALSE(e.elements().empty());
-      EXPECT_EQ(e.elements(),
-                listed(discretize(named.mesh, GetParam()->name), "excluded_samples"));
+      EXPECT_EQ(e.elements(), listed(discretize(named.mesh, GetParam()->name), "excluded_samples"));
       EXPECT_NE(std::string(e.what()).find(std::to_string(e.elements()[0])), std::string::npos);
       EXPECT_NE(std::string(e.what()).find("repair"), std::string::npos);
     }
@@ -76,8 +76,8 @@ TEST_P(Degenerate, strict_names_the_element) {
 
 TEST_P(Degenerate, needles_are_kept_down_to_rounding) {
   for (const double height : {1e-8, 1e-12}) {
-    const PolygonMesh mesh = make_mesh({{0, 0, 0}, {1, 0, 0}, {0.4, height, 0}, {0.5, -0.7, 0}},
-                                       {{0, 1, 2}, {1, 0, 3}});
+    const PolygonMesh mesh =
+        make_mesh({{0, 0, 0}, {1, 0, 0}, {0.4, height, 0}, {0.5, -0.7, 0}}, {{0, 1, 2}, {1, 0, 3}});
     const Discretization d = discretize(mesh, GetParam()->name);
     SCOPED_TRACE(height);
     EXPECT_TRUE(listed(d, "excluded_samples").empty());
@@ -92,10 +92,12 @@ TEST_P(Degenerate, needles_are_kept_down_to_rounding) {
 
 TEST_P(Degenerate, eps_rel_sets_the_limit) {
   const PolygonMesh mesh = make_mesh({{0, 0, 0}, {1, 0, 0}, {0.4, 1e-4, 0}}, {{0, 1, 2}});
-  EXPECT_EQ(discretize(mesh, GetParam()->name, {.eps_rel = 1e-6}).diagnostics.count("excluded_samples"),
-            0);
-  EXPECT_GT(discretize(mesh, GetParam()->name, {.eps_rel = 1e-2}).diagnostics.count("excluded_samples"),
-            0);
+  EXPECT_EQ(
+      discretize(mesh, GetParam()->name, {.eps_rel = 1e-6}).diagnostics.count("excluded_samples"),
+      0);
+  EXPECT_GT(
+      discretize(mesh, GetParam()->name, {.eps_rel = 1e-2}).diagnostics.count("excluded_samples"),
+      0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Operators, Degenerate, testing::ValuesIn(surface_operators()),
@@ -123,8 +125,8 @@ TEST_P(DegeneratePolygons, collapsed_faces_are_listed) {
 
 TEST_P(DegeneratePolygons, needle_polygons_give_finite_semidefinite_matrices) {
   for (const double aspect : {1e-8, 1e-12}) {
-    const PolygonMesh mesh = make_mesh({{0, 0, 0}, {1, 0, 0}, {1.1, aspect, 0}, {0, aspect, 0}},
-                                       {{0, 1, 2, 3}});
+    const PolygonMesh mesh =
+        make_mesh({{0, 0, 0}, {1, 0, 0}, {1.1, aspect, 0}, {0, aspect, 0}}, {{0, 1, 2, 3}});
     SCOPED_TRACE(aspect);
     const Discretization d = discretize(mesh, GetParam());
     EXPECT_TRUE(all_finite(d.stiffness) && all_finite(d.mass) && all_finite(d.gradient));

@@ -42,8 +42,8 @@ struct Hinge {
     constexpr int column[] = {0, 3, 1, 2};
     for (int k = 0; k < 4; ++k) {
       const Vec2 next = p[(k + 1) % 4] - p[k], previous = p[k] - p[(k + 3) % 4];
-      g.col(column[k]) = (Vec2(next.y(), -next.x()) + Vec2(previous.y(), -previous.x())) /
-                         (2 * shoelace());
+      g.col(column[k]) =
+          (Vec2(next.y(), -next.x()) + Vec2(previous.y(), -previous.x())) / (2 * shoelace());
     }
     return g;
   }
@@ -121,10 +121,10 @@ TEST_F(DiamondGeometry, gradient_from_the_two_axes_9) {
     const auto p = h.flat();
     const Vec2 hinge = p[2] - p[0], axis = p[1] - p[3];
     const Vec2 v = turned(hinge), v_star = turned(axis);
-    const double sine = (hinge.x() * (-axis.y()) - hinge.y() * (-axis.x())) /
-                        (hinge.norm() * axis.norm());
-    const Vec2 expected = ((u[2] - u[3]) / axis.norm() * v + (u[1] - u[0]) / hinge.norm() * v_star) /
-                          sine;
+    const double sine =
+        (hinge.x() * (-axis.y()) - hinge.y() * (-axis.x())) / (hinge.norm() * axis.norm());
+    const Vec2 expected =
+        ((u[2] - u[3]) / axis.norm() * v + (u[1] - u[0]) / hinge.norm() * v_star) / sine;
     EXPECT_LT((gradient(h) * u - expected).norm(), 10 * tolerance(h));
   }
 }
@@ -160,9 +160,9 @@ TEST_F(DiamondGeometry, boundary_diamond_is_the_linear_element_of_its_triangle_7
     Eigen::Matrix<double, 2, 3> differences;
     differences << -1, 1, 0, -1, 0, 1;
     EXPECT_LT((boundary - edges.inverse() * differences).cwiseAbs().maxCoeff(), 10 * tolerance(h));
-    EXPECT_NEAR(diamond_2d((h.x2 - h.x1).squaredNorm(), triangle(h, h.xl), kHingeMidpoint, 1e-14)
-                    .area,
-                (h.x2 - h.x1).cross(h.xl - h.x1).norm() / 2, 1e-14);
+    EXPECT_NEAR(
+        diamond_2d((h.x2 - h.x1).squaredNorm(), triangle(h, h.xl), kHingeMidpoint, 1e-14).area,
+        (h.x2 - h.x1).cross(h.xl - h.x1).norm() / 2, 1e-14);
   }
 }
 

@@ -79,17 +79,16 @@ TEST(Mutations, every_mistake_changes_the_matrices) {
   // Otherwise the switches above would test nothing.
   const PolygonMesh mesh = generate_mesh("plane-quads", {.level = 0, .jitter = 0.2});
   const DenseDiamond right = dense_diamond(mesh), bent = dense_diamond(bent_strip(true));
-  for (const Mutation m : {Mutation::TipsSwapped, Mutation::BoundaryDropped,
-                           Mutation::WeightsNotAffine})
+  for (const Mutation m :
+       {Mutation::TipsSwapped, Mutation::BoundaryDropped, Mutation::WeightsNotAffine})
     EXPECT_GT((dense_diamond(mesh, m).stiffness - right.stiffness).cwiseAbs().maxCoeff(), kCaught);
   EXPECT_GT((dense_diamond(bent_strip(true), Mutation::HingeProjected).stiffness - bent.stiffness)
                 .cwiseAbs()
                 .maxCoeff(),
             kCaught);
-  EXPECT_GT((dense_diamond(mesh, Mutation::BoundaryMassQuarter).mass - right.mass)
-                .cwiseAbs()
-                .maxCoeff(),
-            1e-3 * right.mass.cwiseAbs().maxCoeff());
+  EXPECT_GT(
+      (dense_diamond(mesh, Mutation::BoundaryMassQuarter).mass - right.mass).cwiseAbs().maxCoeff(),
+      1e-3 * right.mass.cwiseAbs().maxCoeff());
 }
 
 /// Families whose points need not be moved into the kernel: that step is the library's own.

@@ -28,8 +28,9 @@ TEST(Nonmanifold, unusual_meshes_keep_the_structural_claims) {
       EXPECT_GT(values[0], -rounding);
       // Kernel: a constant for each component and each vertex without a face.
       const auto components = vertex_components(named.mesh);
-      const Index dimension = *std::max_element(components.begin(), components.end()) + 1 +
-                              static_cast<Index>(std::count(components.begin(), components.end(), -1));
+      const Index dimension =
+          *std::max_element(components.begin(), components.end()) + 1 +
+          static_cast<Index>(std::count(components.begin(), components.end(), -1));
       for (Index k = 0; k < values.size(); ++k) {
         if (k < dimension) {
           EXPECT_LT(std::abs(values[k]), rounding);
@@ -52,10 +53,12 @@ TEST(Nonmanifold, description_of_unusual_meshes_does_not_matter) {
       Discretization renumbered = discretize(renumber(named.mesh, number), name);
       renumbered.stiffness = restore_numbers(renumbered.stiffness, number);
       renumbered.mass = restore_numbers(renumbered.mass, number);
-      const Discretization others[] = {
-          renumbered, discretize(permute_faces(named.mesh, 2), name),
-          discretize(rotate_faces(named.mesh), name), discretize(flip_faces(named.mesh, 1), name),
-          discretize(flip_faces(named.mesh, 2), name), discretize(move_rigidly(named.mesh), name)};
+      const Discretization others[] = {renumbered,
+                                       discretize(permute_faces(named.mesh, 2), name),
+                                       discretize(rotate_faces(named.mesh), name),
+                                       discretize(flip_faces(named.mesh, 1), name),
+                                       discretize(flip_faces(named.mesh, 2), name),
+                                       discretize(move_rigidly(named.mesh), name)};
       for (const Discretization& other : others) {
         EXPECT_LT(difference(other.stiffness, reference.stiffness), rounding);
         EXPECT_LT(difference(other.mass, reference.mass), rounding);

@@ -2,10 +2,9 @@
 // symmetry, semidefiniteness, kernel, linear precision, D = -G^T M_s, L = D G, total mass.
 // Tolerances are multiples of the rounding unit times the row length or condition that they sum.
 
+#include "carat/solve/spd_solver.h"
 #include "support/claim_cases.h"
 #include "support/measures.h"
-
-#include "carat/solve/spd_solver.h"
 
 namespace carat::test {
 namespace {
@@ -115,8 +114,8 @@ TEST_P(PlaneStructure, gradients_of_linear_functions_are_exact) {
   const PolygonMesh mesh = GetParam().mesh();
   const Vec3 c(0.6, -1.3, 0);
   for (const VirtualPoint point : {VirtualPoint::AreaMinimizer, VirtualPoint::Centroid}) {
-    const Discretization d = discretization(
-        mesh, {.virtual_vertex = {point}, .parts = DiscretizationParts::Frames});
+    const Discretization d =
+        discretization(mesh, {.virtual_vertex = {point}, .parts = DiscretizationParts::Frames});
     // Values of size 1 differ over heights of h / condition, h > 0.01 here.
     const double tolerance = 10 * kEps / 0.01 * condition(mesh, {point});
     EXPECT_LT(gradient_defect(d, mesh.points(), c), tolerance);
@@ -128,11 +127,9 @@ TEST_P(PlaneStructure, gradients_of_linear_functions_are_exact) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Claims, PlaneStructure,
-                         testing::ValuesIn(claim_cases([](const ClaimCase& c) {
-                           return c.planar();
-                         })),
-                         case_name);
+INSTANTIATE_TEST_SUITE_P(
+    Claims, PlaneStructure,
+    testing::ValuesIn(claim_cases([](const ClaimCase& c) { return c.planar(); })), case_name);
 
 class TriangleStructure : public ClaimTest {};
 
@@ -147,11 +144,9 @@ TEST_P(TriangleStructure, equals_cotan_exactly_where_claimed) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Claims, TriangleStructure,
-                         testing::ValuesIn(claim_cases([](const ClaimCase& c) {
-                           return c.triangles();
-                         })),
-                         case_name);
+INSTANTIATE_TEST_SUITE_P(
+    Claims, TriangleStructure,
+    testing::ValuesIn(claim_cases([](const ClaimCase& c) { return c.triangles(); })), case_name);
 
 }  // namespace
 }  // namespace carat::test

@@ -19,8 +19,8 @@ struct ClaimCase {
   FamilyOptions options;
 
   std::string name() const {
-    std::string text = std::string(entry->name) + "_" + family + "_L" +
-                       std::to_string(options.level);
+    std::string text =
+        std::string(entry->name) + "_" + family + "_L" + std::to_string(options.level);
     if (options.jitter > 0) text += "_jittered";
     if (options.anisotropy > 1) text += "_anisotropic";
     std::replace(text.begin(), text.end(), '-', '_');

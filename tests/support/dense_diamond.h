@@ -113,8 +113,7 @@ inline DenseDiamond dense_diamond(const PolygonMesh& mesh, Mutation mutation = M
     }
     if (mutation == Mutation::TipsSwapped) g.col(1).swap(g.col(3));
     out.measure[e] = area;
-    const double share =
-        area / (boundary && mutation != Mutation::BoundaryMassQuarter ? 3 : 4);
+    const double share = area / (boundary && mutation != Mutation::BoundaryMassQuarter ? 3 : 4);
     const auto scatter = [&](Index row, int column) {
       if (row >= 0) {
         unsandwiched.block(2 * e, row, 2, 1) += g.col(column);
@@ -131,9 +130,9 @@ inline DenseDiamond dense_diamond(const PolygonMesh& mesh, Mutation mutation = M
   }
   Vector twice(2 * ne);
   for (Index e = 0; e < ne; ++e) twice[2 * e] = twice[2 * e + 1] = out.measure[e];
-  out.gradient = unsandwiched * out.prolongation;                            // (18)
-  out.divergence = -out.gradient.transpose() * twice.asDiagonal();           // (20)
-  out.stiffness = -out.divergence * out.gradient;                            // (21)
+  out.gradient = unsandwiched * out.prolongation;                                    // (18)
+  out.divergence = -out.gradient.transpose() * twice.asDiagonal();                   // (20)
+  out.stiffness = -out.divergence * out.gradient;                                    // (21)
   out.mass = out.prolongation.transpose() * lumped.asDiagonal() * out.prolongation;  // (22)
   return out;
 }

@@ -111,8 +111,8 @@ inline double gradient_defect(const Discretization& d, const Points& points, con
   double worst = 0;
   for (const GradientFrames::Part& part : d.frames.parts) {
     for (Index k = 0; k < d.gradient_dimension; ++k)
-      worst = std::max(worst, std::abs(g[part.sample * d.gradient_dimension + k] -
-                                       part.axes.col(k).dot(c)));
+      worst = std::max(
+          worst, std::abs(g[part.sample * d.gradient_dimension + k] - part.axes.col(k).dot(c)));
   }
   return worst / c.norm();
 }

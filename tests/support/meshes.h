@@ -70,8 +70,15 @@ inline PolygonMesh book(Index pages) {
 
 /// Two triangles far apart and, between them, two vertices without a face.
 inline PolygonMesh two_components_with_loose_vertices() {
-  return make_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {50, 50, 50}, {9, 9, 9}, {0, 0, 5}, {1, 0, 5},
-                    {1, 1, 5}, {0, 1, 5}},
+  return make_mesh({{0, 0, 0},
+                    {1, 0, 0},
+                    {0, 1, 0},
+                    {50, 50, 50},
+                    {9, 9, 9},
+                    {0, 0, 5},
+                    {1, 0, 5},
+                    {1, 1, 5},
+                    {0, 1, 5}},
                    {{0, 1, 2}, {5, 6, 7, 8}});
 }
 
@@ -97,10 +104,9 @@ inline PolygonMesh tetrahedron() {
 }
 
 inline PolygonMesh cube() {
-  return make_mesh({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1},
-                    {0, 1, 1}},
-                   {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6},
-                    {3, 0, 4, 7}});
+  return make_mesh(
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
 }
 
 /// Two polygons that share two consecutive edges (0-1 and 1-2).
@@ -118,14 +124,25 @@ inline PolygonMesh face_with_a_repeated_vertex() {
 /// A square face with a slit from vertex 0 to the inner vertex 4: both sides of edge 0-4 belong to
 /// the same face. A second square lies beside it.
 inline PolygonMesh slit_face() {
-  return make_mesh({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0.9, 0.7, 0}, {4, 0, 0}, {4, 2, 0}},
-                   {{4, 0, 1, 2, 3, 0}, {1, 5, 6, 2}});
+  return make_mesh(
+      {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0.9, 0.7, 0}, {4, 0, 0}, {4, 2, 0}},
+      {{4, 0, 1, 2, 3, 0}, {1, 5, 6, 2}});
 }
 
 /// A planar octagonal spiral of which no point sees all sides: its kernel is empty.
 inline PolygonMesh spiral_face() {
-  return make_mesh({{0, 0, 0}, {5, 0, 0}, {5, 4, 0}, {1, 4, 0}, {1, 2, 0}, {3, 2, 0}, {3, 3, 0},
-                    {2, 3, 0}, {2, 3.5, 0}, {4, 3.5, 0}, {4, 1, 0}, {0, 1, 0}},
+  return make_mesh({{0, 0, 0},
+                    {5, 0, 0},
+                    {5, 4, 0},
+                    {1, 4, 0},
+                    {1, 2, 0},
+                    {3, 2, 0},
+                    {3, 3, 0},
+                    {2, 3, 0},
+                    {2, 3.5, 0},
+                    {4, 3.5, 0},
+                    {4, 1, 0},
+                    {0, 1, 0}},
                    {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}});
 }
 

@@ -80,8 +80,8 @@ inline Eigen::Matrix3d some_rotation() {
 }
 
 inline PolygonMesh move_rigidly(const PolygonMesh& mesh) {
-  const Points points = (mesh.points() * some_rotation().transpose()).rowwise() +
-                        Eigen::RowVector3d(0.3, -0.8, 1.7);
+  const Points points =
+      (mesh.points() * some_rotation().transpose()).rowwise() + Eigen::RowVector3d(0.3, -0.8, 1.7);
   return mesh.with_points(points);
 }
 
