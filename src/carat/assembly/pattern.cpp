@@ -10,47 +10,19 @@
 namespace carat {
 namespace {
 
-/// Marks members of a set that is emptied in O(1): a member carries the current owner's number.
-class Stamps {
- public:
-  explicit Stamps(Index n) : owner_(static_cast<std::size_t>(n), -1) {}
-  bool insert(Index member, Index owner) {
-    if (owner_[member] == owner) return false;
-    owner_[member] = owner;
-    return true;
-  }
-
- private:
-  Array<Index> owner_;
-};
-
-/// Scratch of one thread while it collects rows.
+/// Scratch of one thread while it collects rows: every column once.
 struct Collector {
-  Collector(Index n_vertices, Index n_faces) : vertex_seen(n_vertices), face_seen(n_faces) {}
-  Stamps vertex_seen, face_seen;
+  explicit Collector(Index n_vertices) : row_of_vertex(static_cast<std::size_t>(n_vertices), -1) {}
+
+  void add(Index v, Index row) {
+    if (row_of_vertex[v] == row) return;
+    row_of_vertex[v] = row;
+    columns.push_back(v);
+  }
+
+  Array<Index> row_of_vertex;  // the last row that a vertex was added to
   Array<Index> columns;
-
-  void add_face(const Csr& faces, Index f, Index row) {
-    if (!face_seen.insert(f, row)) return;
-    for (const Index v : faces.row(f))
-      if (vertex_seen.insert(v, row)) columns.push_back(v);
-  }
 };
-
-void collect_faces(const SurfaceIncidence& mesh, Index row, Collector& out) {
-  for (const Index corner : mesh.vertex_corners.row(row))
-    out.add_face(mesh.faces, mesh.corner_faces[corner], row);
-}
-
-void collect_diamonds(const SurfaceIncidence& mesh, Index row, Collector& out) {
-  collect_faces(mesh, row, out);
-  for (const Index corner : mesh.vertex_corners.row(row)) {
-    const Index f = mesh.corner_faces[corner];
-    for (Index c = mesh.faces.begin(f); c < mesh.faces.end(f); ++c)
-      for (const Index side : mesh.edge_corners.row(mesh.corner_edges[c]))
-        if (side != c) out.add_face(mesh.faces, mesh.corner_faces[side], row);
-  }
-}
 
 /// A symmetric pattern from a function that collects one row's columns in any order. Row sizes
 /// come from the first pass; the second writes the transpose, which is the same pattern with every
@@ -67,7 +39,7 @@ SparseMatrix symmetric_pattern(const SurfaceIncidence& mesh, int threads, const 
   };
   std::vector<Part> parts(static_cast<std::size_t>(threads));
   parallel_blocks(n, threads, [&](int block, Index begin, Index end) {
-    Collector collector(n, mesh.faces.n_rows());
+    Collector collector(n);
     // Guess the size from the first rows, so that the array rarely grows.
     constexpr Index kSample = 1000;
     for (Index row = begin; row < end; ++row) {
@@ -75,7 +47,7 @@ SparseMatrix symmetric_pattern(const SurfaceIncidence& mesh, int threads, const 
         collector.columns.reserve(collector.columns.size() / kSample *
                                       static_cast<std::size_t>(end - begin) * 9 / 8 + 64);
       const std::size_t before = collector.columns.size();
-      collect(mesh, row, collector);
+      collect(row, collector);
       row_sizes[row] = static_cast<Index>(collector.columns.size() - before);
     }
     parts[static_cast<std::size_t>(block)] = {begin, end, std::move(collector.columns)};
@@ -127,12 +99,55 @@ SparseMatrix diagonal_pattern(Index n) {
   return matrix;
 }
 
-SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads) {
-  return symmetric_pattern(mesh, threads, "the matrix", collect_faces);
+FaceRings face_rings(const SurfaceIncidence& mesh, int threads) {
+  const Index n = mesh.faces.n_rows();
+  FaceRings rings;
+  rings.offsets.resize(static_cast<std::size_t>(n) + 1);
+  const auto for_sides_across = [&](Index f, auto&& visit) {
+    for (Index c = mesh.faces.begin(f); c < mesh.faces.end(f); ++c)
+      for (const Index side : mesh.edge_corners.row(mesh.corner_edges[c]))
+        if (side != c) visit(side);
+  };
+  parallel_blocks(n, threads, [&](int, Index begin, Index end) {
+    for (Index f = begin; f < end; ++f) {
+      std::int64_t size = mesh.faces.size(f);
+      for_sides_across(f, [&](Index side) {
+        size += mesh.faces.size(mesh.corner_faces[side]) - 2;
+      });
+      rings.offsets[f + 1] = size;
+    }
+  });
+  rings.offsets[0] = 0;
+  for (Index f = 0; f < n; ++f) rings.offsets[f + 1] += rings.offsets[f];
+  rings.vertices.resize(static_cast<std::size_t>(rings.offsets[n]));
+  parallel_blocks(n, threads, [&](int, Index begin, Index end) {
+    for (Index f = begin; f < end; ++f) {
+      Index* out = rings.vertices.data() + rings.begin(f);
+      for (const Index v : mesh.faces.row(f)) *out++ = v;
+      for_sides_across(f, [&](Index side) {
+        for_vertices_across(mesh, side, [&](Index c) { *out++ = mesh.faces.indices[c]; });
+      });
+    }
+  });
+  return rings;
 }
 
-SparseMatrix diamond_pattern(const SurfaceIncidence& mesh, int threads) {
-  return symmetric_pattern(mesh, threads, "the diamond stiffness", collect_diamonds);
+SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads) {
+  return symmetric_pattern(mesh, threads, "the matrix", [&](Index row, Collector& out) {
+    for (const Index corner : mesh.vertex_corners.row(row))
+      for (const Index v : mesh.faces.row(mesh.corner_faces[corner])) out.add(v, row);
+  });
+}
+
+SparseMatrix diamond_pattern(const SurfaceIncidence& mesh, const FaceRings& rings, int threads) {
+  return symmetric_pattern(
+      mesh, threads, "the diamond stiffness", [&](Index row, Collector& out) {
+        for (const Index corner : mesh.vertex_corners.row(row)) {
+          const Index f = mesh.corner_faces[corner];
+          for (std::int64_t k = rings.begin(f); k < rings.end(f); ++k)
+            out.add(rings.vertices[static_cast<std::size_t>(k)], row);
+        }
+      });
 }
 
 }  // namespace carat

@@ -1,7 +1,7 @@
 #pragma once
 // The symbolic phase: sparsity patterns from connectivity alone, by counting.
 
-#include <functional>
+#include <cstdint>
 
 #include "carat/base/types.h"
 
@@ -16,6 +16,29 @@ struct SurfaceIncidence {
   const Csr& vertex_corners;          ///< vertex -> corners
 };
 
+/// The vertices that each face reaches through its diamonds: its own, in their order, then those of
+/// the faces across its sides without the side's two ends, side by side and by corner. A vertex
+/// can occur more than once.
+struct FaceRings {
+  Array<std::int64_t> offsets;
+  Array<Index> vertices;
+
+  std::int64_t begin(Index face) const { return offsets[static_cast<std::size_t>(face)]; }
+  std::int64_t end(Index face) const { return offsets[static_cast<std::size_t>(face) + 1]; }
+};
+
+/// Calls visit(v) for the vertices of the face of `corner` that follow the side's two ends, in
+/// their order around the face.
+template <class Visit>
+void for_vertices_across(const SurfaceIncidence& mesh, Index corner, const Visit& visit) {
+  const Index f = mesh.corner_faces[corner];
+  const Index begin = mesh.faces.begin(f), size = mesh.faces.size(f);
+  Index c = corner - begin + 2;
+  for (Index k = 2; k < size; ++k, ++c) visit(begin + (c >= size ? c - size : c));
+}
+
+FaceRings face_rings(const SurfaceIncidence& mesh, int threads);
+
 /// Square matrix of unset values: row i holds the vertices of all faces of i.
 /// \throws InvalidMesh  2^31 entries or more
 SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads);
@@ -23,7 +46,7 @@ SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads);
 /// Square matrix of unset values: row i holds the vertices of all faces of i and of all faces
 /// across an edge from them, the reach of the diamond Laplacian.   [BBA21 section 7, Locality]
 /// \throws InvalidMesh  2^31 entries or more
-SparseMatrix diamond_pattern(const SurfaceIncidence& mesh, int threads);
+SparseMatrix diamond_pattern(const SurfaceIncidence& mesh, const FaceRings& rings, int threads);
 
 /// Square diagonal matrix of unset values.
 SparseMatrix diagonal_pattern(Index n);

@@ -13,37 +13,21 @@ namespace carat {
 /// Adds to one row of a matrix with a known pattern.
 class RowWriter {
  public:
-  explicit RowWriter(Index n_cols) : position_(static_cast<std::size_t>(n_cols)) {}
-
-  void open(SparseMatrix& matrix, Index row) {
+  /// Zeroes the row. \param position  one place a column; only those of the row are set and read
+  RowWriter(SparseMatrix& matrix, Index row, Array<Index>& position)
+      : position_(position.data()) {
     const Index begin = matrix.outerIndexPtr()[row], end = matrix.outerIndexPtr()[row + 1];
-    values_ = matrix.valuePtr() + begin;
-    const Index* const columns = matrix.innerIndexPtr() + begin;
-    const Index size = end - begin;
-    for (Index k = 0; k < size; ++k) position_[columns[k]] = k;
-    std::fill(values_, values_ + size, 0.0);
+    values_ = matrix.valuePtr();
+    const Index* const columns = matrix.innerIndexPtr();
+    for (Index k = begin; k < end; ++k) position_[columns[k]] = k;
+    std::fill(values_ + begin, values_ + end, 0.0);
   }
-  void add(Index column, double value) { values_[position_[column]] += value; }
+  void add(Index column, double value) const { values_[position_[column]] += value; }
 
  private:
-  Array<Index> position_;  // column -> place in the open row; set for the row's columns only
-  double* values_ = nullptr;
+  Index* position_;
+  double* values_;
 };
-
-/// Fills a matrix row by row: fill(row, writer, scratch) adds the contributions of a row to
-/// `writer`. Each thread makes its own `scratch` by make_scratch().
-template <class MakeScratch, class Fill>
-void assemble_rows(SparseMatrix& matrix, int threads, const MakeScratch& make_scratch,
-                   const Fill& fill) {
-  parallel_blocks(static_cast<Index>(matrix.rows()), threads, [&](int, Index begin, Index end) {
-    RowWriter writer(static_cast<Index>(matrix.cols()));
-    auto scratch = make_scratch();
-    for (Index row = begin; row < end; ++row) {
-      writer.open(matrix, row);
-      fill(row, writer, scratch);
-    }
-  });
-}
 
 /// Sum over faces of dense local matrices: entry (row, column) of every face is
 /// local(f, a, b), a and b the positions of the two corners in the face. Into a diagonal pattern
@@ -51,17 +35,18 @@ void assemble_rows(SparseMatrix& matrix, int threads, const MakeScratch& make_sc
 template <class Local>
 void assemble_face_blocks(SparseMatrix& matrix, const SurfaceIncidence& mesh, bool lumped,
                           int threads, const Local& local) {
-  struct NoScratch {};
-  assemble_rows(
-      matrix, threads, [] { return NoScratch{}; },
-      [&](Index row, RowWriter& writer, NoScratch&) {
-        for (const Index corner : mesh.vertex_corners.row(row)) {
-          const Index f = mesh.corner_faces[corner];
-          const Index begin = mesh.faces.begin(f), size = mesh.faces.size(f);
-          for (Index b = 0; b < size; ++b)
-            writer.add(lumped ? row : mesh.faces.indices[begin + b], local(f, corner - begin, b));
-        }
-      });
+  parallel_blocks(static_cast<Index>(matrix.rows()), threads, [&](int, Index first, Index last) {
+    Array<Index> position(static_cast<std::size_t>(matrix.cols()));
+    for (Index row = first; row < last; ++row) {
+      const RowWriter writer(matrix, row, position);
+      for (const Index corner : mesh.vertex_corners.row(row)) {
+        const Index f = mesh.corner_faces[corner];
+        const Index begin = mesh.faces.begin(f), size = mesh.faces.size(f);
+        for (Index b = 0; b < size; ++b)
+          writer.add(lumped ? row : mesh.faces.indices[begin + b], local(f, corner - begin, b));
+      }
+    }
+  });
 }
 
 }  // namespace carat

@@ -35,12 +35,13 @@ inline constexpr VirtualTriangle kHingeMidpoint{0.5, 0.0};
 inline Diamond2d diamond_2d(double length2, VirtualTriangle left, VirtualTriangle right,
                             double eps_rel) {
   const double a2 = left.double_area + right.double_area;  // 2 |D|
+  // Both sides times length2, which saves the divisions.
   const auto distance2 = [&](VirtualTriangle t) {
-    return t.foot * t.foot * length2 + t.double_area * t.double_area / length2;
+    const double along = t.foot * length2;
+    return along * along + t.double_area * t.double_area;
   };
-  if (!(length2 > 0)) return {0, 0, 0, 0, 0};
-  const double size2 = std::max({length2, distance2(left), distance2(right)});
-  if (!(a2 > 2 * eps_rel * size2)) return {0, 0, 0, 0, 0};
+  const double size2 = std::max({length2 * length2, distance2(left), distance2(right)});
+  if (!(length2 > 0 && a2 * length2 > 2 * eps_rel * size2)) return {0, 0, 0, 0, 0};
   const double shear = left.foot - right.foot;
   const double gamma = length2 / (2 * a2);
   const double beta = gamma * shear;

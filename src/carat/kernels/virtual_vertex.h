@@ -63,13 +63,24 @@ class VirtualVertexKernel {
   const Vec3& area_vector() const { return area_vector_; }
 
  private:
-  void load(const Points& points, std::span<const Index> face);
-  bool find_point();
-  bool minimise_trace();
+  // N: the number of vertices where it is known while compiling, so that loops unroll; 0: n_.
+  template <int N>
+  VirtualVertexStatus compute_polygon(const Points& points, const Index* face, double* weights,
+                                      VirtualTriangle* triangles);
+  VirtualVertexStatus compute_triangle(const Points& points, const Index* face, double* weights,
+                                       VirtualTriangle* triangles);
+  template <int N>
+  void load(const Points& points, const Index* face);
+  template <int N>
+  bool minimise_area();
+  template <int N>
   bool set_weights(double* weights);
-  bool set_weights_in_space(double* weights);
+  template <int N>
   bool flips_a_triangle() const;
+  bool set_weights_in_space(double* weights);
+  bool minimise_trace();
   bool find_kernel_centroid();
+  int next(int i) const { return i + 1 == n_ ? 0 : i + 1; }
 
   VirtualVertexRule rule_;
   int n_ = 0;

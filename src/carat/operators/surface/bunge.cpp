@@ -6,6 +6,7 @@
 
 #include "carat/assembly/row_assembly.h"
 #include "carat/base/error.h"
+#include "carat/base/parallel.h"
 #include "carat/kernels/cotan.h"
 #include "carat/operators/common.h"
 #include "carat/operators/registry.h"

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "carat/assembly/diamond_assembly.h"
-#include "carat/assembly/row_assembly.h"
 #include "carat/base/error.h"
+#include "carat/base/parallel.h"
 #include "carat/kernels/diamond_2d.h"
 #include "carat/operators/common.h"
 #include "carat/operators/registry.h"
@@ -34,7 +34,6 @@ class DiamondAssembly final : public Assembly {
   // Numeric.
   void order_nonmanifold_faces(const Points& points);
   void compute_terms(const Points& points);
-  void assemble_mass();
   void assemble_gradient(const Points& points);
   void collect_frames(const Points& points);
   void report();
@@ -63,27 +62,22 @@ class DiamondAssembly final : public Assembly {
     return diamond_2d(length2, triangle(term.left, term.v1), triangle(term.right, term.v1),
                       options_.eps_rel);
   }
-  /// What a diamond adds to the mass of each of its vertices.   [BBA21 (23)]
-  /// The literal quarter would lose a quarter of every boundary diamond: it has three vertices.
-  double vertex_share(Index diamond) const {
-    const bool inner = terms_[diamond].left >= 0 && terms_[diamond].right >= 0;
-    return result_.sample_measure[diamond] / (inner ? 4 : 3);
-  }
-
   PolygonMesh mesh_;
   DiscretizationOptions options_;
   SurfaceIncidence incidence_;
+  FaceRings rings_;
   Array<Index> edge_diamonds_;  // empty: diamond e belongs to edge e
   Array<DiamondTerm> terms_;
   VirtualVertices virtuals_;
-  Array<double> face_mass_;
+  DiamondWorkspace workspace_;
   Points face_points_;  // only where frames or a coefficient need them
 };
 
 DiamondAssembly::DiamondAssembly(const PolygonMesh& mesh, const DiscretizationOptions& options)
     : mesh_(mesh), options_(options), incidence_(surface_incidence(mesh_)) {
   result_.name = "diamond";
-  result_.stiffness = diamond_pattern(incidence_, options_.threads);
+  rings_ = face_rings(incidence_, options_.threads);
+  result_.stiffness = diamond_pattern(incidence_, rings_, options_.threads);
   result_.mass = options_.lumped_mass ? diagonal_pattern(mesh_.n_vertices())
                                       : face_pattern(incidence_, options_.threads);
   find_diamonds();
@@ -116,7 +110,7 @@ void DiamondAssembly::find_diamonds() {
       if (!runs_along(around[0]) && (around.size() == 1 || runs_along(around[1])))
         std::swap(sides.left, sides.right);
       for (Index d = first_diamond(e); d < end_diamond(e); ++d)
-        terms_[d] = {0, 0, 0, v1, v2, sides.left, sides.right};
+        terms_[d] = {0, 0, 0, 0, v1, v2, sides.left, sides.right};
     }
   });
 }
@@ -187,52 +181,13 @@ void DiamondAssembly::compute_terms(const Points& points) {
       term.alpha = scale * value.alpha;
       term.beta = scale * value.beta;
       term.gamma = scale * value.gamma;
+      // The literal quarter of (23) would lose a quarter of every boundary diamond, which has
+      // three vertices.   [BBA21 (23)]
+      const bool inner = term.left >= 0 && term.right >= 0;
+      term.mass_share = part * value.area / (inner ? 4 : 3);
       result_.sample_measure[d] = part * value.area;
     }
   });
-}
-
-void DiamondAssembly::assemble_mass() {
-  const Csr& faces = mesh_.faces();
-  const Array<Index>& edge_of_corner = mesh_.edges().of_corner;
-  const auto for_diamonds_of = [&](Index corner, auto&& visit) {
-    const Index e = edge_of_corner[corner];
-    for (Index d = first_diamond(e); d < end_diamond(e); ++d)
-      if (terms_[d].left == corner || terms_[d].right == corner) visit(d);
-  };
-  // M^ at the virtual vertices   [BBA21 (23)]
-  face_mass_.resize(static_cast<std::size_t>(mesh_.n_faces()));
-  parallel_blocks(mesh_.n_faces(), options_.threads, [&](int, Index begin, Index end) {
-    for (Index f = begin; f < end; ++f) {
-      double mass = 0;
-      for (Index c = faces.begin(f); c < faces.end(f); ++c)
-        for_diamonds_of(c, [&](Index d) { mass += vertex_share(d); });
-      face_mass_[f] = mass;
-    }
-  });
-  // M = P^T M^ P   [BBA21 (22)]
-  const bool lumped = options_.lumped_mass;
-  const Array<double>& weights = virtuals_.weights;
-  struct NoScratch {};
-  assemble_rows(
-      result_.mass, options_.threads, [] { return NoScratch{}; },
-      [&](Index row, RowWriter& writer, NoScratch&) {
-        double own = 0;
-        for (const Index corner : mesh_.vertex_corners().row(row)) {
-          const Index f = mesh_.corner_faces()[corner];
-          const Index begin = faces.begin(f), end = faces.end(f);
-          // A diamond's two sides both meet its end points: half from each.
-          for (const Index side : {corner, corner == begin ? end - 1 : corner - 1})
-            for_diamonds_of(side, [&](Index d) {
-              const bool inner = terms_[d].left >= 0 && terms_[d].right >= 0;
-              own += inner ? vertex_share(d) / 2 : vertex_share(d);
-            });
-          const double mass = face_mass_[f] * weights[corner];
-          for (Index c = begin; c < end; ++c)
-            writer.add(lumped ? row : faces.indices[c], mass * weights[c]);
-        }
-        if (own != 0) writer.add(row, own);
-      });
 }
 
 void DiamondAssembly::make_gradient_pattern() {
@@ -363,9 +318,9 @@ void DiamondAssembly::update(const Points& points) {
     face_points_ = face_points(mesh_, points, virtuals_.weights);
   order_nonmanifold_faces(points);
   compute_terms(points);
-  assemble_mass();
-  assemble_diamonds(result_.stiffness, incidence_, terms_, edge_diamonds_, virtuals_.weights,
-                    options_.threads);
+  // S = -L and M = P^T M^ P   [BBA21 (21), (22)]
+  assemble_diamonds(result_.stiffness, result_.mass, options_.lumped_mass, incidence_, rings_,
+                    terms_, edge_diamonds_, virtuals_.weights, options_.threads, workspace_);
   if (options_.parts != DiscretizationParts::Matrices) assemble_gradient(points);
   if (options_.parts == DiscretizationParts::Frames) collect_frames(points);
   report();
