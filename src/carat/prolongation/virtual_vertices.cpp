@@ -1,11 +1,50 @@
 #include "carat/prolongation/virtual_vertices.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
+#include "carat/kernels/virtual_vertex_block.h"
 
 namespace carat {
+namespace {
+
+/// Faces of one valence that wait until a block is full.
+struct FaceBlock {
+  std::array<Index, kBlockFaces> faces;
+  int size = 0;
+};
+
+/// Computes the waiting faces. A block that is not full repeats its last face, so that every face
+/// gets the same bits wherever it stands.
+template <class OneFace>
+void flush(FaceBlock& block, Index valence, const PolygonMesh& mesh, const Points& points,
+           const VirtualVertexRule& rule, VirtualVertices& result, const OneFace& one_face) {
+  if (block.size == 0) return;
+  std::array<const Index*, kBlockFaces> vertices;
+  std::array<double*, kBlockFaces> weights;
+  std::array<VirtualTriangle*, kBlockFaces> triangles;
+  for (int l = 0; l < kBlockFaces; ++l) {
+    const Index corner = mesh.faces().begin(block.faces[std::min(l, block.size - 1)]);
+    vertices[l] = mesh.faces().indices.data() + corner;
+    weights[l] = result.weights.data() + corner;
+    triangles[l] = result.triangles.data() + corner;
+  }
+  const unsigned unsound =
+      virtual_vertex_block(valence, points.data(), vertices.data(),
+                           rule.point == VirtualPoint::Centroid, weights.data(), triangles.data());
+  for (int l = 0; l < block.size; ++l) {
+    if ((unsound >> l & 1U) != 0)
+      one_face(block.faces[l]);
+    else
+      result.status[block.faces[l]] = VirtualVertexStatus::Regular;
+  }
+  block.size = 0;
+}
+
+}  // namespace
 
 VirtualVertices virtual_vertices(const PolygonMesh& mesh, const Points& points,
                                  const VirtualVertexRule& rule, int threads) {
@@ -19,13 +58,29 @@ void update_virtual_vertices(const PolygonMesh& mesh, const Points& points,
   result.weights.resize(static_cast<std::size_t>(mesh.n_corners()));
   result.triangles.resize(static_cast<std::size_t>(mesh.n_corners()));
   result.status.resize(static_cast<std::size_t>(mesh.n_faces()));
+  const bool blocks =
+      rule.weights == AffineWeights::InPlane && rule.point != VirtualPoint::TraceMinimizer;
   parallel_blocks(mesh.n_faces(), threads, [&](int, Index begin, Index end) {
     VirtualVertexKernel kernel(rule);
-    for (Index f = begin; f < end; ++f) {
+    const auto one_face = [&](Index f) {
       const Index corner = mesh.faces().begin(f);
       result.status[f] = kernel.compute(points, mesh.face(f), result.weights.data() + corner,
                                         result.triangles.data() + corner);
+    };
+    std::array<FaceBlock, 3> waiting;  // by valence
+    for (Index f = begin; f < end; ++f) {
+      const Index valence = mesh.faces().size(f);
+      if (!blocks || !has_block_kernel(valence)) {
+        one_face(f);
+        continue;
+      }
+      FaceBlock& block = waiting[static_cast<std::size_t>(valence - 4)];
+      block.faces[block.size++] = f;
+      if (block.size == kBlockFaces) flush(block, valence, mesh, points, rule, result, one_face);
     }
+    for (Index valence = 4; valence <= 6; ++valence)
+      flush(waiting[static_cast<std::size_t>(valence - 4)], valence, mesh, points, rule, result,
+            one_face);
   });
 }
 
