@@ -73,9 +73,9 @@ class TemporaryFolder {
 
   /// Moves everything to the target.
   void publish(const std::vector<std::string>& files) const {
-    std::error_code failure;
+    std::error_code ignored, failure;
     for (const std::string& file : files)
-      if (fs::is_directory(target_ / file, failure))
+      if (fs::is_directory(target_ / file, ignored))
         throw IoError((target_ / file).string() + ": is a folder; remove it");
     if (exists_) {
       for (const std::string& file : files)

@@ -1,6 +1,7 @@
 #include "cli/session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
@@ -89,6 +90,7 @@ void print_json(const Json& object) {
 }
 
 std::string text(double value) {
+  if (std::isnan(value)) return "nan";  // printf would give it a sign
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.6g", value);
   return buffer;

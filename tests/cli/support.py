@@ -1,0 +1,129 @@
+"""Runs the program and reads what it writes."""
+
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else "carat"
+
+
+class CaratTest(unittest.TestCase):
+    """A test with a folder of its own, which is where the program runs."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="carat-test-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def carat(self, *arguments, **options):
+        return subprocess.run(
+            [PROGRAM, *map(str, arguments)],
+            cwd=self.folder, capture_output=True, text=True, timeout=120,
+            stdin=subprocess.DEVNULL, **options)
+
+    def succeed(self, *arguments):
+        """Standard output of a run without a fault."""
+        run = self.carat(*arguments)
+        self.assertEqual(run.returncode, 0, f"carat {arguments}: {run.stderr}")
+        return run.stdout
+
+    def report(self, *arguments):
+        """The JSON object of a run; anything else on standard output is an error."""
+        text = self.succeed(*arguments, "--json")
+        self.assertNotRegex(text, r"\b(NaN|Infinity|nan|inf)\b")
+        return json.loads(text)
+
+    def fail_with(self, exit_code, *arguments, says, **options):
+        """The message of a run that must fail: one line, on standard error, with these words."""
+        run = self.carat(*arguments, **options)
+        self.assertEqual(run.returncode, exit_code, f"carat {arguments}: {run.stderr}")
+        lines = run.stderr.splitlines()
+        self.assertEqual(len(lines), 1, run.stderr)
+        self.assertTrue(lines[0].startswith("carat: error: "), lines[0])
+        for words in [says] if isinstance(says, str) else says:
+            self.assertIn(words, lines[0])
+        return lines[0]
+
+    def files(self):
+        return sorted(str(p.relative_to(self.folder)) for p in self.folder.rglob("*"))
+
+    def write(self, name, content):
+        path = self.folder / name
+        if isinstance(content, bytes):
+            path.write_bytes(content)
+        else:
+            path.write_text(content)
+        return name
+
+    def generate(self, family, level, name="mesh.ply", *more):
+        self.succeed("generate", family, "--level", level, "-o", name, *more)
+        return name
+
+    def read_obj(self, name):
+        """Points and faces (from 0) of an OBJ file."""
+        points, faces = [], []
+        for line in (self.folder / name).read_text().splitlines():
+            words = line.split()
+            if words[:1] == ["v"]:
+                points.append(tuple(map(float, words[1:4])))
+            elif words[:1] == ["f"]:
+                faces.append([int(w.split("/")[0]) - 1 for w in words[1:]])
+        return points, faces
+
+    def write_off(self, name, points, faces):
+        lines = ["OFF", f"{len(points)} {len(faces)} 0"]
+        lines += [" ".join(repr(float(x)) for x in p) for p in points]
+        lines += [" ".join(map(str, [len(f), *f])) for f in faces]
+        return self.write(name, "\n".join(lines) + "\n")
+
+    def read_matrix(self, name):
+        """Rows, columns and {(row, column): value} of a Matrix Market file."""
+        with open(self.folder / name, encoding="ascii") as file:
+            header = file.readline().split()
+            self.assertEqual(header[:4], ["%%MatrixMarket", "matrix", "coordinate", "real"])
+            symmetric = header[4] == "symmetric"
+            line = file.readline()
+            while line.startswith("%"):
+                line = file.readline()
+            rows, columns, count = map(int, line.split())
+            entries = {}
+            for line in file:
+                row, column, value = line.split()
+                i, j = int(row) - 1, int(column) - 1
+                entries[i, j] = float(value)
+                if symmetric:
+                    entries[j, i] = float(value)
+                count -= 1
+        self.assertEqual(count, 0)
+        return rows, columns, entries
+
+    def read_field(self, name, field):
+        """Values of a vertex field of a binary PLY file with double properties."""
+        data = (self.folder / name).read_bytes()
+        end = data.index(b"end_header\n") + len(b"end_header\n")
+        header = data[:end].decode()
+        self.assertIn("binary_little_endian", header)
+        vertices = int(re.search(r"element vertex (\d+)", header).group(1))
+        body = header.split("element vertex")[1].split("element")[0]
+        kinds = re.findall(r"property (\w+) (\w+)", body)
+        layout = struct.Struct("<" + "".join({"double": "d", "float": "f", "int": "i"}[k]
+                                             for k, _ in kinds))
+        column = [n for _, n in kinds].index(field)
+        return [row[column] for row in
+                layout.iter_unpack(data[end:end + vertices * layout.size])]
+
+
+def great_circle(p, q):
+    cross = (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])
+    return math.atan2(math.hypot(*cross), sum(a * b for a, b in zip(p, q)))
+
+
+def main():
+    unittest.main(verbosity=2)

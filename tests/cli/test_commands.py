@@ -1,0 +1,241 @@
+"""What every command does when all is well."""
+
+import os
+import subprocess
+
+from support import PROGRAM, CaratTest, main
+
+COMMANDS = ["info", "curvature", "geodesics", "poisson", "operators", "view", "convert", "generate",
+            "list"]
+
+
+class Help(CaratTest):
+    def test_program(self):
+        text = self.succeed("--help")
+        for command in COMMANDS:
+            self.assertRegex(text, rf"(?m)^  {command} ")
+        self.assertIn("Examples:", text)
+        self.assertRegex(self.succeed("--version"), r"^carat \d+\.\d+\.\d+\n$")
+        bare = self.carat()
+        self.assertEqual((bare.returncode, bare.stdout), (2, text))
+
+    def test_commands(self):
+        for command in COMMANDS:
+            for flag in ["-h", "--help"]:
+                text = self.succeed(command, flag)
+                self.assertIn("Examples:", text)
+                self.assertIn(f"carat {command} ", text.split("Examples:")[1])
+                self.assertIn("--json", text)
+                self.assertIn("--threads", text)
+                self.assertLess(max(map(len, text.splitlines())), 101, command)
+
+    def test_defaults_and_choices_come_from_the_registries(self):
+        operators = self.report("list", "operators")["operators"]
+        default = [o["name"] for o in operators if o["default"]]
+        self.assertEqual(default, [operators[0]["name"]])
+        for command in ["curvature", "geodesics", "poisson", "operators"]:
+            text = self.succeed(command, "--help")
+            self.assertIn(",".join(o["name"] for o in operators), text)
+            self.assertIn("=" + default[0], text)
+
+
+class List(CaratTest):
+    def test_lists(self):
+        names = {what: [entry["name"] for entry in self.report("list", what)[what]]
+                 for what in ["operators", "families", "formats", "apps"]}
+        self.assertEqual(names["operators"], ["diamond", "bunge", "cotan"])
+        self.assertIn("sphere-hexagons", names["families"])
+        self.assertIn("vtp", names["formats"])
+        self.assertEqual(sorted(names["apps"]), ["curvature", "geodesics", "poisson"])
+        for what, entries in names.items():
+            lines = self.succeed("list", what).splitlines()
+            self.assertEqual([line.split()[0] for line in lines], entries)
+
+
+class Reports(CaratTest):
+    def setUp(self):
+        super().setUp()
+        self.generate("sphere-hexagons", 1)
+
+    def check(self, report, command, phases):
+        for key in ["command", "version", "threads", "input", "sizes", "seconds", "diagnostics"]:
+            self.assertIn(key, report)
+        self.assertEqual(report["command"], command)
+        self.assertEqual(list(report["seconds"]), phases)
+        for seconds in report["seconds"].values():
+            self.assertGreaterEqual(seconds, 0)
+        for finding in report["diagnostics"].values():
+            self.assertEqual(set(finding), {"count", "elements", "meaning"})
+
+    def test_info(self):
+        report = self.report("info", "mesh.ply")
+        self.check(report, "info", ["read", "statistics", "symbolic", "numeric"])
+        self.assertEqual(report["sizes"]["vertices"] - report["sizes"]["edges"]
+                         + report["sizes"]["faces"], 2)
+        statistics = report["statistics"]
+        self.assertEqual(statistics["faces_of_valence"]["5"], 12)
+        self.assertEqual(statistics["components"], 1)
+        self.assertTrue(statistics["closed"])
+        self.assertGreater(statistics["area"], 12)
+        self.assertLess(statistics["area"], 12.5664)
+        self.assertEqual(report["fields"], {"vertex": [], "face": []})
+        self.assertIn("12 of 5", self.succeed("info", "mesh.ply"))
+
+    def test_curvature(self):
+        report = self.report("curvature", "mesh.ply", "--signed", "-o", "out.vtp")
+        self.check(report, "curvature", ["read", "symbolic", "numeric", "solve", "write"])
+        self.assertGreater(report["nnz"]["stiffness"], report["nnz"]["mass"])
+        self.assertGreater(report["mean_curvature"]["min"], 0.9)
+        fields = self.report("info", "out.vtp")["fields"]
+        self.assertEqual([f["name"] for f in fields["vertex"]], ["mean_curvature"])
+
+    def test_geodesics(self):
+        report = self.report("geodesics", "mesh.ply", "--source", 3, "--source", 5,
+                             "-o", "out.vtu")
+        self.check(report, "geodesics", ["read", "symbolic", "numeric", "factor", "solve", "write"])
+        self.assertEqual(report["options"]["sources"], [3, 5])
+        self.assertGreater(report["time_step"], 0)
+        fields = self.report("info", "out.vtu")["fields"]
+        self.assertEqual([f["name"] for f in fields["vertex"]], ["distance"])
+        self.assertEqual([(f["name"], f["components"]) for f in fields["face"]],
+                         [("direction", 3)])
+
+    def test_time_step_options(self):
+        step = {name: self.report("geodesics", "mesh.ply", "--source", 0, *arguments)["time_step"]
+                for name, arguments in {"max": [], "four": ["--t-coef", 4],
+                                        "mean": ["--edge-length", "mean"]}.items()}
+        self.assertEqual(step["four"], 4 * step["max"])
+        self.assertLess(step["mean"], step["max"])
+
+    def test_poisson(self):
+        report = self.report("poisson", "mesh.ply", "--rhs", "2*x", "--exact", "x", "-o", "out.ply")
+        self.check(report, "poisson", ["read", "symbolic", "numeric", "factor", "solve", "write"])
+        self.assertEqual(report["floating_components"], 1)
+        self.assertEqual(set(report["errors"]), {"rmse", "l2", "max"})
+        self.assertLess(report["errors"]["max"], 0.1)
+        names = [f["name"] for f in self.report("info", "out.ply")["fields"]["vertex"]]
+        for name in ["u", "error"]:
+            self.assertIn(name, names)
+        self.assertIsNone(self.report("poisson", "mesh.ply", "--rhs", "x")["errors"])
+
+    def test_operators(self):
+        report = self.report("operators", "mesh.ply", "-o", "out")
+        self.check(report, "operators", ["read", "symbolic", "numeric", "write"])
+        self.assertEqual(self.files(), ["mesh.ply", "out"] + sorted(
+            "out/" + file for file in report["files"]))
+        self.assertEqual(set(report["files"]), {"stiffness.mtx", "mass.mtx", "gradient.mtx",
+                                                "divergence.mtx", "operators.json"})
+
+    def test_options_reach_the_operator(self):
+        self.generate("sphere-concave", 0, "concave.ply")
+        plain = self.report("curvature", "concave.ply")
+        for arguments in [["--operator", "bunge"], ["--lumped"], ["--virtual-point", "centroid"],
+                          ["--virtual-point", "trace"], ["--weights", "minimum-norm"]]:
+            other = self.report("curvature", "concave.ply", *arguments)
+            self.assertNotEqual(other["options"], plain["options"])
+            self.assertNotEqual(other["mean_curvature"]["max"], plain["mean_curvature"]["max"],
+                                arguments)
+        self.generate("plane-lshape", 0, "l.ply")
+        arguments = ["curvature", "l.ply", "--virtual-point", "centroid"]
+        moved = self.report(*arguments)["diagnostics"]
+        kept = self.report(*arguments, "--keep-flipped")["diagnostics"]
+        self.assertGreater(moved["moved_virtual_vertices"]["count"], 0)
+        self.assertEqual(moved["flipped_virtual_vertices"]["count"], 0)
+        self.assertEqual(kept["flipped_virtual_vertices"]["count"],
+                         moved["moved_virtual_vertices"]["count"])
+
+    def test_view(self):
+        self.succeed("geodesics", "mesh.ply", "--source", 0, "-o", "distance.vtp")
+        report = self.report("view", "distance.vtp", "mesh.ply", "-o", "page.html")
+        self.check(report, "view", ["read", "write"])
+        self.assertEqual(report["input"], ["distance.vtp", "mesh.ply"])
+        page = (self.folder / "page.html").read_text()
+        self.assertIn('"distance"', page)
+        self.assertNotRegex(page, r'(?:src|href)="https?:')
+        self.succeed("curvature", "mesh.ply", "-o", "curvature.html")
+        self.assertIn('"mean_curvature"', (self.folder / "curvature.html").read_text())
+
+    def test_generate(self):
+        report = self.report("generate", "plane-quads", "--level", 2, "--jitter", 0.2, "--seed", 3,
+                             "--anisotropy", 2, "-o", "a.ply")
+        self.check(report, "generate", ["generate", "write"])
+        self.generate("plane-quads", 2, "b.ply", "--jitter", 0.2, "--seed", 3, "--anisotropy", 2)
+        self.generate("plane-quads", 2, "c.ply", "--jitter", 0.2, "--seed", 4, "--anisotropy", 2)
+        a, b, c = ((self.folder / f"{name}.ply").read_bytes() for name in "abc")
+        self.assertEqual(a, b)
+        self.assertNotEqual(a, c)
+
+    def test_nothing_is_written_without_output(self):
+        for arguments in [["curvature", "mesh.ply"], ["geodesics", "mesh.ply", "--source", 0],
+                          ["poisson", "mesh.ply", "--rhs", "x"], ["info", "mesh.ply"]]:
+            self.assertIn("time: ", self.succeed(*arguments))
+        self.assertEqual(self.files(), ["mesh.ply"])
+
+    def test_progress_is_for_terminals(self):
+        run = self.carat("geodesics", "mesh.ply", "--source", 0)
+        self.assertEqual(run.stderr, "")
+
+    def test_progress_line_on_a_terminal(self):
+        self.generate("sphere-quads", 4, "large.ply")
+        master, terminal = os.openpty()
+        with open(os.devnull, "w") as nowhere:
+            subprocess.run([PROGRAM, "geodesics", "large.ply", "--source", "0", "--threads", "1"],
+                           cwd=self.folder, stderr=terminal, stdout=nowhere, check=True,
+                           env={**os.environ, "TERM": "xterm"}, timeout=120)
+        os.close(terminal)
+        drawn = b""
+        try:
+            while chunk := os.read(master, 4096):
+                drawn += chunk
+        except OSError:
+            pass  # how a closed terminal ends
+        os.close(master)
+        self.assertIn(b"factor", drawn)
+        self.assertTrue(drawn.endswith(b"\r\033[K"), drawn[-20:])
+
+
+class Convert(CaratTest):
+    def test_formats_keep_the_mesh(self):
+        self.generate("sphere-hexagons", 0, "a.obj")
+        for extension in ["off", "ply", "vtp", "vtu"]:
+            self.succeed("convert", "a.obj", "b." + extension)
+            self.succeed("convert", "b." + extension, "c.obj")
+            self.assertEqual(self.read_obj("a.obj"), self.read_obj("c.obj"), extension)
+
+    def test_dual(self):
+        self.generate("sphere-triangles", 1)
+        report = self.report("convert", "mesh.ply", "dual.ply", "--dual")
+        for a, b in [("vertices", "faces"), ("faces", "vertices"), ("edges", "edges")]:
+            self.assertEqual(report["sizes"][a], report["output_sizes"][b])
+
+    def fields(self, name):
+        return {element: [f["name"] for f in fields]
+                for element, fields in self.report("info", name)["fields"].items()}
+
+    def test_fields_go_along(self):
+        self.generate("sphere-quads", 1)
+        self.succeed("geodesics", "mesh.ply", "--source", 0, "-o", "a.vtp")
+        both = {"vertex": ["distance"], "face": ["direction"]}
+        self.assertEqual(self.fields("a.vtp"), both)
+        self.succeed("convert", "a.vtp", "b.vtu")
+        self.assertEqual(self.fields("b.vtu"), both)
+        report = self.report("convert", "a.vtp", "triangles.vtp", "--triangulate")
+        self.assertEqual(report["output_sizes"]["faces"], 2 * report["sizes"]["faces"])
+        self.assertEqual(self.fields("triangles.vtp"), both)
+        run = self.carat("convert", "a.vtp", "dual.vtp", "--dual")
+        self.assertIn("carat: note: dropped distance:", run.stderr)
+        self.assertEqual(self.fields("dual.vtp"), {"vertex": ["direction"], "face": []})
+        run = self.carat("convert", "a.vtp", "c.obj")
+        self.assertIn("carat: note: dropped direction: c.obj", run.stderr)
+        self.assertEqual(run.returncode, 0)
+
+    def test_dual_with_boundary_drops_face_fields(self):
+        self.generate("plane-quads", 0)
+        self.succeed("poisson", "mesh.ply", "--rhs", 1, "--dirichlet", 0, "-o", "a.vtp")
+        report = self.report("convert", "a.vtp", "dual.vtp", "--dual")
+        self.assertEqual(len(report["notes"]), 2)
+        self.assertEqual(self.fields("dual.vtp"), {"vertex": [], "face": []})
+
+
+if __name__ == "__main__":
+    main()
