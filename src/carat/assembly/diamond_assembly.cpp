@@ -25,51 +25,66 @@ struct EdgeDiamonds {
   }
 };
 
-/// r_f and the mass of the virtual vertex, for faces [begin, end).
+/// The values of the corners, faces and rings of faces [begin, end).
 template <bool kOneAnEdge>
-void fill_rings(const SurfaceIncidence& mesh, const FaceRings& rings,
+void fill_faces(const SurfaceIncidence& mesh, const FaceRings& rings,
                 const EdgeDiamonds<kOneAnEdge>& diamonds, const Array<double>& weights,
                 Index begin, Index end, DiamondWorkspace& out) {
   for (Index f = begin; f < end; ++f) {
-    const Index first = mesh.faces.begin(f), size = mesh.faces.size(f);
-    double* const own = out.ring_values.data() + rings.begin(f);
-    double* across = own + size;
-    std::fill(own, across, 0.0);
-    double gamma_sum = 0, mass = 0;
-    for (Index a = 0; a < size; ++a) {
-      const Index corner = first + a, edge = mesh.corner_edges[corner];
-      const Index next = a + 1 == size ? 0 : a + 1;
-      double own_beta = 0;  // of d = u(next) - u(a), whichever way the edge is numbered
+    const Index first = mesh.faces.begin(f), last = mesh.faces.end(f);
+    double* across = out.across.data() + rings.begin(f);
+    DiamondWorkspace::Face face{0, 0};
+    std::fill(out.corners.begin() + first, out.corners.begin() + last,
+              DiamondWorkspace::Corner{0, 0, 0, 0, 0});
+    for (Index corner = first; corner < last; ++corner) {
+      const Index edge = mesh.corner_edges[corner];
+      const Index next = corner + 1 == last ? first : corner + 1;
+      DiamondWorkspace::Corner& a = out.corners[corner];
+      DiamondWorkspace::Corner& b = out.corners[next];
       diamonds.for_side(edge, corner, [&](const DiamondTerm& term) {
-        mass += term.mass_share;
-        gamma_sum += term.gamma;
+        face.mass += term.mass_share;
+        face.gamma += term.gamma;
+        // -sigma beta d at this corner; minus that at the next.
         const bool along_hinge = mesh.faces.indices[corner] == term.v1;
-        own_beta += along_hinge == (term.left == corner) ? term.beta : -term.beta;
+        const double beta = along_hinge == (term.left == corner) ? term.beta : -term.beta;
+        a.beta += beta;
+        b.beta -= beta;
+        // A diamond's two sides each bring half of what belongs to its hinge.
+        double side = 0.5 * term.alpha, share = 0.5 * term.mass_share;
         if (term.left < 0 || term.right < 0) {
-          // u at the midpoint of the hinge is the mean of its ends.
-          own[a] -= 0.5 * term.gamma;
-          own[next] -= 0.5 * term.gamma;
+          // p_across is half of both ends: u at the midpoint of the hinge is their mean.
+          const double half_gamma = 0.5 * term.gamma;
+          a.diagonal += half_gamma - beta;
+          b.diagonal += half_gamma + beta;
+          a.beta -= half_gamma;
+          b.beta -= half_gamma;
+          side = term.alpha - 0.5 * half_gamma;
+          share = term.mass_share;
         }
+        a.side += side;
+        a.diagonal += side;
+        b.diagonal += side;
+        a.mass += share;
+        b.mass += share;
       });
-      own[a] += own_beta;
-      own[next] -= own_beta;
-      for (const Index side : mesh.edge_corners.row(edge)) {
-        if (side == corner) continue;
+      for (const Index other : mesh.edge_corners.row(edge)) {
+        if (other == corner) continue;
         double gamma = 0;
         diamonds.for_side(edge, corner, [&](const DiamondTerm& term) {
-          if (term.left == side || term.right == side) gamma += term.gamma;
+          if (term.left == other || term.right == other) gamma += term.gamma;
         });
         // The side's two ends are vertices of f as well.
-        const Index g = mesh.corner_faces[side];
-        const Index side_end = side + 1 == mesh.faces.end(g) ? mesh.faces.begin(g) : side + 1;
-        const bool opposed = mesh.faces.indices[side] == mesh.faces.indices[first + next];
-        own[opposed ? next : a] -= gamma * weights[side];
-        own[opposed ? a : next] -= gamma * weights[side_end];
-        for_vertices_across(mesh, side, [&](Index c) { *across++ = -gamma * weights[c]; });
+        const Index g = mesh.corner_faces[other];
+        const Index other_end = other + 1 == mesh.faces.end(g) ? mesh.faces.begin(g) : other + 1;
+        const bool opposed = mesh.faces.indices[other] == mesh.faces.indices[next];
+        (opposed ? b : a).ring -= gamma * weights[other];
+        (opposed ? a : b).ring -= gamma * weights[other_end];
+        for_vertices_across(mesh, other, [&](Index c) { *across++ = -gamma * weights[c]; });
       }
     }
-    for (Index a = 0; a < size; ++a) own[a] += gamma_sum * weights[first + a];
-    out.face_mass[f] = mass;
+    for (Index corner = first; corner < last; ++corner)
+      out.corners[corner].ring += out.corners[corner].beta;
+    out.faces[f] = face;
   }
 }
 
@@ -95,64 +110,44 @@ class RowWriter {
   Index* position_;  // column -> its entry; set for the columns of the open row only
 };
 
-template <bool kOneAnEdge>
 void fill_rows(SparseMatrix& stiffness_matrix, SparseMatrix& mass_matrix, bool lumped_mass,
-               const SurfaceIncidence& mesh, const FaceRings& rings,
-               const EdgeDiamonds<kOneAnEdge>& diamonds, const Array<double>& weights, Index begin,
-               Index end, const DiamondWorkspace& values, DiamondWorkspace::Thread& scratch) {
+               const SurfaceIncidence& mesh, const FaceRings& rings, const Array<double>& weights,
+               Index begin, Index end, const DiamondWorkspace& values,
+               DiamondWorkspace::Thread& scratch) {
   RowWriter stiffness(stiffness_matrix, scratch.stiffness_position);
   RowWriter mass(mass_matrix, scratch.mass_position);
   for (Index row = begin; row < end; ++row) {
     stiffness.open(row);
     mass.open(row);
     const std::span<const Index> corners = mesh.vertex_corners.row(row);
-    double own_mass = 0;
+    double diagonal = 0, diagonal_mass = 0;
     for (const Index corner : corners) {
       const Index f = mesh.corner_faces[corner];
       const Index first = mesh.faces.begin(f), last = mesh.faces.end(f);
-      // The edges at the row's vertex, from this face's side: d_i (alpha d - beta w).
-      double coefficient = 0;  // of this face's weights
-      const auto add_hinge = [&](Index side, Index neighbour) {
-        diamonds.for_side(mesh.corner_edges[side], side, [&](const DiamondTerm& term) {
-          const bool from_left = term.left == side;
-          const double beta = (term.v2 == row) == from_left ? term.beta : -term.beta;
-          coefficient -= beta;
-          const bool boundary = term.left < 0 || term.right < 0;
-          if (boundary) {
-            // w holds minus half of both ends: the mean of u at the midpoint of the hinge.
-            coefficient -= 0.5 * term.gamma;
-            stiffness.add(row, beta + 0.25 * term.gamma);
-            stiffness.add(neighbour, 0.25 * term.gamma);
-          }
-          if (from_left || boundary) {  // once a diamond
-            stiffness.add(row, term.alpha);
-            stiffness.add(neighbour, -term.alpha);
-            own_mass += term.mass_share;
-          }
-        });
-      };
+      const Index next = corner + 1 == last ? first : corner + 1;
       const Index previous = corner == first ? last - 1 : corner - 1;
-      add_hinge(corner, mesh.faces.indices[corner + 1 == last ? first : corner + 1]);
-      add_hinge(previous, mesh.faces.indices[previous]);
-
+      const DiamondWorkspace::Corner& own = values.corners[corner];
       const double weight = weights[corner];
-      const double mass_weight = values.face_mass[f] * weight;
-      const Index* v = rings.vertices.data() + rings.begin(f);
-      const double* r = values.ring_values.data() + rings.begin(f);
-      const Index* const ring_end = rings.vertices.data() + rings.end(f);
-      if (lumped_mass) {
-        own_mass += mass_weight;  // the weights of a face sum to one
-        for (Index c = first; c < last; ++c, ++v, ++r)
-          stiffness.add(*v, coefficient * weights[c] + weight * *r);
-      } else {
-        for (Index c = first; c < last; ++c, ++v, ++r) {
-          stiffness.add(*v, coefficient * weights[c] + weight * *r);
-          mass.add(*v, mass_weight * weights[c]);
-        }
-      }
-      for (; v < ring_end; ++v, ++r) stiffness.add(*v, weight * *r);
+      const double face_weight = own.beta + values.faces[f].gamma * weight;
+      const double mass_weight = values.faces[f].mass * weight;
+      diagonal += own.diagonal;
+      diagonal_mass += own.mass;
+      stiffness.add(mesh.faces.indices[next], -own.side);
+      stiffness.add(mesh.faces.indices[previous], -values.corners[previous].side);
+      for (Index c = first; c < last; ++c)
+        stiffness.add(mesh.faces.indices[c],
+                      face_weight * weights[c] + weight * values.corners[c].ring);
+      if (lumped_mass)
+        diagonal_mass += mass_weight;  // the weights of a face sum to one
+      else
+        for (Index c = first; c < last; ++c)
+          mass.add(mesh.faces.indices[c], mass_weight * weights[c]);
+      const std::int64_t ring_end = rings.end(f);
+      for (std::int64_t k = rings.begin(f); k < ring_end; ++k)
+        stiffness.add(rings.vertices[k], weight * values.across[k]);
     }
-    if (!corners.empty() || lumped_mass) mass.add(row, own_mass);
+    if (!corners.empty()) stiffness.add(row, diagonal);
+    if (!corners.empty() || lumped_mass) mass.add(row, diagonal_mass);
   }
 }
 
@@ -164,25 +159,24 @@ void assemble_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_
                        const Array<double>& weights, int threads, DiamondWorkspace& workspace) {
   const Index n_vertices = static_cast<Index>(stiffness.rows());
   const Index n_faces = mesh.faces.n_rows();
-  workspace.ring_values.resize(rings.vertices.size());
-  workspace.face_mass.resize(static_cast<std::size_t>(n_faces));
+  workspace.corners.resize(weights.size());
+  workspace.faces.resize(static_cast<std::size_t>(n_faces));
+  workspace.across.resize(rings.vertices.size());
   workspace.threads.resize(static_cast<std::size_t>(resolve_threads(threads)));
-  const auto run = [&](const auto& diamonds) {
-    parallel_blocks(n_faces, threads, [&](int, Index begin, Index end) {
-      fill_rings(mesh, rings, diamonds, weights, begin, end, workspace);
-    });
-    parallel_blocks(n_vertices, threads, [&](int block, Index begin, Index end) {
-      DiamondWorkspace::Thread& scratch = workspace.threads[static_cast<std::size_t>(block)];
-      scratch.stiffness_position.resize(static_cast<std::size_t>(n_vertices));
-      scratch.mass_position.resize(static_cast<std::size_t>(n_vertices));
-      fill_rows(stiffness, mass, lumped_mass, mesh, rings, diamonds, weights, begin, end,
-                workspace, scratch);
-    });
-  };
-  if (edge_diamonds.empty())
-    run(EdgeDiamonds<true>{terms.data(), nullptr});
-  else
-    run(EdgeDiamonds<false>{terms.data(), edge_diamonds.data()});
+  parallel_blocks(n_faces, threads, [&](int, Index begin, Index end) {
+    if (edge_diamonds.empty())
+      fill_faces(mesh, rings, EdgeDiamonds<true>{terms.data(), nullptr}, weights, begin, end,
+                 workspace);
+    else
+      fill_faces(mesh, rings, EdgeDiamonds<false>{terms.data(), edge_diamonds.data()}, weights,
+                 begin, end, workspace);
+  });
+  parallel_blocks(n_vertices, threads, [&](int block, Index begin, Index end) {
+    DiamondWorkspace::Thread& scratch = workspace.threads[static_cast<std::size_t>(block)];
+    scratch.stiffness_position.resize(static_cast<std::size_t>(n_vertices));
+    scratch.mass_position.resize(static_cast<std::size_t>(n_vertices));
+    fill_rows(stiffness, mass, lumped_mass, mesh, rings, weights, begin, end, workspace, scratch);
+  });
 }
 
 }  // namespace carat

@@ -1,13 +1,12 @@
 #pragma once
 // Stiffness and mass of the diamond Laplacian from per-diamond scalars and per-face weights.
 //
-// With p_f the affine weights of face f as a row vector over the vertices and w = p_l - p_r, a
-// diamond over the edge (1, 2) has the energy alpha d^2 - 2 beta d (w u) + gamma (w u)^2 with
-// d = u_2 - u_1. So row i of the stiffness is
-//   sum over edges at i of  d_i (alpha d - beta w)  +  sum over faces f at i of  p_f,i r_f,
-//   r_f = sum over sides of f of  +-(gamma w - beta d),  + where f is the left face.
-// The r_f are computed once a face, over the vertices of its ring; then every row adds the few
-// that belong to it.
+// With p_f the affine weights of face f as a row vector over the vertices, w = p_l - p_r and
+// d = u_2 - u_1, a diamond has the energy alpha d^2 - 2 beta d (w u) + gamma (w u)^2. Summed over
+// the sides of a face, sigma = + where it is to the left, the row of its vertex i is
+//   b_i p_f + p_f,i (b + Gamma p_f - sum over sides of gamma p_across) + the alpha of its sides,
+//   b = -sum over sides of sigma beta d,  Gamma = sum of gamma.
+// These are computed once a face; then every row adds the few faces that belong to it.
 
 #include <vector>
 
@@ -28,11 +27,24 @@ struct DiamondTerm {
 
 /// Intermediate values of assemble_diamonds, kept between calls for their memory.
 struct DiamondWorkspace {
-  Array<double> ring_values;  ///< r_f over the ring of every face
-  Array<double> face_mass;    ///< of the virtual vertices  [length^2]
+  /// What a corner's face adds to the row of the corner's vertex.
+  struct Corner {
+    double beta;       ///< b at the vertex
+    double ring;       ///< b - sum of gamma p_across, at the vertex
+    double side;       ///< coupling of the two ends of the side that starts here
+    double diagonal;   ///< of the stiffness
+    double mass;       ///< of the vertex itself  [length^2]
+  };
+  struct Face {
+    double gamma;  ///< Gamma
+    double mass;   ///< of the virtual vertex  [length^2]
+  };
   struct Thread {
     Array<Index> stiffness_position, mass_position;  ///< column -> its entry in the open row
   };
+  Array<Corner> corners;
+  Array<Face> faces;
+  Array<double> across;  ///< -gamma p_across, over the vertices of the rings
   std::vector<Thread> threads;
 };
 

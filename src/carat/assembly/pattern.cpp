@@ -110,7 +110,7 @@ FaceRings face_rings(const SurfaceIncidence& mesh, int threads) {
   };
   parallel_blocks(n, threads, [&](int, Index begin, Index end) {
     for (Index f = begin; f < end; ++f) {
-      std::int64_t size = mesh.faces.size(f);
+      std::int64_t size = 0;
       for_sides_across(f, [&](Index side) {
         size += mesh.faces.size(mesh.corner_faces[side]) - 2;
       });
@@ -123,7 +123,6 @@ FaceRings face_rings(const SurfaceIncidence& mesh, int threads) {
   parallel_blocks(n, threads, [&](int, Index begin, Index end) {
     for (Index f = begin; f < end; ++f) {
       Index* out = rings.vertices.data() + rings.begin(f);
-      for (const Index v : mesh.faces.row(f)) *out++ = v;
       for_sides_across(f, [&](Index side) {
         for_vertices_across(mesh, side, [&](Index c) { *out++ = mesh.faces.indices[c]; });
       });
@@ -144,6 +143,7 @@ SparseMatrix diamond_pattern(const SurfaceIncidence& mesh, const FaceRings& ring
       mesh, threads, "the diamond stiffness", [&](Index row, Collector& out) {
         for (const Index corner : mesh.vertex_corners.row(row)) {
           const Index f = mesh.corner_faces[corner];
+          for (const Index v : mesh.faces.row(f)) out.add(v, row);
           for (std::int64_t k = rings.begin(f); k < rings.end(f); ++k)
             out.add(rings.vertices[static_cast<std::size_t>(k)], row);
         }

@@ -16,9 +16,8 @@ struct SurfaceIncidence {
   const Csr& vertex_corners;          ///< vertex -> corners
 };
 
-/// The vertices that each face reaches through its diamonds: its own, in their order, then those of
-/// the faces across its sides without the side's two ends, side by side and by corner. A vertex
-/// can occur more than once.
+/// The vertices that each face reaches across its sides: those of the faces there without the side's
+/// two ends, side by side and by corner. A vertex can occur more than once.
 struct FaceRings {
   Array<std::int64_t> offsets;
   Array<Index> vertices;

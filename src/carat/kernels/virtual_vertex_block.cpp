@@ -23,14 +23,19 @@ template <int N>
   const double use_point = centroid ? 0.0 : 1.0;
   for (int l = 0; l < kBlockFaces; ++l) {
     double x[N][3], mean[3] = {0, 0, 0};
+#pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
+#pragma GCC unroll 6
       for (int i = 0; i < N; ++i) x[i][k] = lanes.x[i][k][l];
+#pragma GCC unroll 6
       for (int i = 0; i < N; ++i) mean[k] += x[i][k];
+#pragma GCC unroll 6
       for (int i = 0; i < N; ++i) x[i][k] -= mean[k] / N;
     }
     // Vector area, size, and A x_f = b of the area minimiser   [BBA21 (19)]
     double nx = 0, ny = 0, nz = 0, size2 = 0;
     double a00 = 0, a11 = 0, a22 = 0, a01 = 0, a02 = 0, a12 = 0, b0 = 0, b1 = 0, b2 = 0;
+#pragma GCC unroll 6
     for (int i = 0; i < N; ++i) {
       const int j = i + 1 == N ? 0 : i + 1;
       nx += x[i][1] * x[j][2] - x[i][2] * x[j][1];
@@ -74,6 +79,7 @@ template <int N>
     const double t0 = q, t1 = sign + ny * ny * p, t2 = -ny;
     // a_i = 1/n + y_i^T (sum y y^T)^-1 y_f
     double ys[N], yt[N], ss = 0, st = 0, tt = 0;
+#pragma GCC unroll 6
     for (int i = 0; i < N; ++i) {
       ys[i] = x[i][0] * s0 + x[i][1] * s1 + x[i][2] * s2;
       yt[i] = x[i][0] * t0 + x[i][1] * t1 + x[i][2] * t2;
@@ -86,6 +92,7 @@ template <int N>
     sound = sound & (det2 > kNoise2 * (ss + tt) * (ss + tt));
     const double ws = (tt * fs - st * ft) / det2, wt = (ss * ft - st * fs) / det2;
     double y0 = 0, y1 = 0, y2 = 0;  // the virtual vertex
+#pragma GCC unroll 6
     for (int i = 0; i < N; ++i) {
       const double w = 1.0 / N + ys[i] * ws + yt[i] * wt;
       lanes.weight[i][l] = w;
@@ -93,6 +100,7 @@ template <int N>
       y1 += w * x[i][1];
       y2 += w * x[i][2];
     }
+#pragma GCC unroll 6
     for (int i = 0; i < N; ++i) {
       const int j = i + 1 == N ? 0 : i + 1;
       const double e0 = x[j][0] - x[i][0], e1 = x[j][1] - x[i][1], e2 = x[j][2] - x[i][2];
@@ -115,6 +123,7 @@ template <int N>
   Lanes<N> lanes;
   for (int l = 0; l < kBlockFaces; ++l) {
     const double* const anchor = points + 3 * static_cast<std::ptrdiff_t>(faces[l][0]);
+#pragma GCC unroll 6
     for (int i = 0; i < N; ++i) {
       const double* const x = points + 3 * static_cast<std::ptrdiff_t>(faces[l][i]);
       for (int k = 0; k < 3; ++k) lanes.x[i][k][l] = x[k] - anchor[k];
@@ -124,6 +133,7 @@ template <int N>
   unsigned unsound = 0;
   for (int l = 0; l < kBlockFaces; ++l) {
     unsound |= static_cast<unsigned>(!(lanes.sound[l] > 0)) << l;
+#pragma GCC unroll 6
     for (int i = 0; i < N; ++i) {
       weights[l][i] = lanes.weight[i][l];
       triangles[l][i] = {lanes.foot[i][l], lanes.double_area[i][l]};
