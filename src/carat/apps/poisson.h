@@ -13,14 +13,14 @@ namespace carat {
 /// Edges are numbered as in PolygonMesh::edges() and must lie on the boundary.
 struct BoundaryConditions {
   /// u = value at these vertices (anywhere, not only on the boundary).
-  std::vector<Index> dirichlet_vertices;
-  std::vector<double> dirichlet_values;
+  std::vector<Index> dirichlet_vertices{};
+  std::vector<double> dirichlet_values{};
   /// K du/dn = flux over these edges, n the outward conormal: positive flux flows in.
-  std::vector<Index> neumann_edges;
-  std::vector<double> neumann_flux;
+  std::vector<Index> neumann_edges{};
+  std::vector<double> neumann_flux{};
   /// K du/dn + alpha u = g over these edges, alpha >= 0.
-  std::vector<Index> robin_edges;
-  std::vector<double> robin_alpha, robin_g;
+  std::vector<Index> robin_edges{};
+  std::vector<double> robin_alpha{}, robin_g{};
 };
 
 struct PoissonSolution {

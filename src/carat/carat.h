@@ -1,0 +1,14 @@
+#pragma once
+// Everything of carat::core that a program needs: meshes, operators, solvers, problems.
+
+#include "carat/apps/heat_geodesics.h"
+#include "carat/apps/mean_curvature.h"
+#include "carat/apps/poisson.h"
+#include "carat/base/error.h"
+#include "carat/generators/families.h"
+#include "carat/mesh/fields.h"
+#include "carat/mesh/polygon_mesh.h"
+#include "carat/mesh/statistics.h"
+#include "carat/mesh/transform.h"
+#include "carat/operators/registry.h"
+#include "carat/solve/spd_solver.h"
