@@ -56,6 +56,7 @@ TEST(SpdSolver, a_failing_pivot_is_named) {
     FAIL() << "nothing was thrown";
   } catch (const SolverFailure& e) {
     EXPECT_NE(std::string(e.what()).find("not positive definite"), std::string::npos);
+    EXPECT_EQ(e.elements(), std::vector<Index>{20});  // the rows before it have sound pivots
   }
   EXPECT_THROW(SpdSolver(SparseMatrix(-spd())), SolverFailure);
 }

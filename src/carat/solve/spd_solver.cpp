@@ -165,7 +165,7 @@ struct SpdSolver::Impl {
 
 struct SpdSolver::Impl {
   using Lower = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
-  Eigen::SimplicialLLT<Lower, Eigen::Upper> factor;
+  Eigen::SimplicialLDLT<Lower, Eigen::Upper> factor;  // unlike LL^T it shows the pivots
   Reduction reduction;
   Lower upper;
   Index full_nonzeros;
@@ -192,10 +192,11 @@ struct SpdSolver::Impl {
   void factorise() {
     const auto start = Clock::now();
     factor.factorize(upper);
-    if (factor.info() != Eigen::Success)
-      throw SolverFailure(
-          "the matrix is not positive definite; look for degenerate elements, or for a part of "
-          "the mesh without boundary condition");
+    for (Eigen::Index k = 0; k < upper.cols(); ++k)
+      if (!(factor.vectorD()[k] > 0)) {
+        const Index row = reduction.kept[factor.permutationPinv().indices()[k]];
+        throw SolverFailure(pivot_message(row), {row});
+      }
     info.factor_seconds = seconds_since(start);
     info.nonzeros = factor.matrixL().nestedExpression().nonZeros();
   }
