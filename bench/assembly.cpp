@@ -1,7 +1,8 @@
 // Assembly of stiffness and mass of the diamond Laplacian: symbolic and numeric phase against the
 // textbook way in the same run, one thread, with peak memory and the bandwidth reached.
 //
-//   carat_bench [--benchmark_...]     Google Benchmark's options; CARAT_BENCH_VERTICES sets the size
+//   carat_bench [--benchmark_...]     Google Benchmark's options; CARAT_BENCH_VERTICES sets the
+//   size
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
@@ -91,9 +92,8 @@ void numeric(benchmark::State& state, const std::string& kind) {
     assembly->update(mesh.points());
     state.SetIterationTime(now() - start);
   }
-  state.counters["GB/s"] =
-      benchmark::Counter(1e-9 * least_bytes(mesh, assembly->discretization()),
-                         benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["GB/s"] = benchmark::Counter(1e-9 * least_bytes(mesh, assembly->discretization()),
+                                              benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void one_shot(benchmark::State& state, const std::string& kind) {

@@ -73,8 +73,7 @@ Baseline triplet_baseline(const PolygonMesh& mesh) {
     const Vec3 xl = faces[0] < 0 ? mid : Vec3(face_points.row(faces[0]).transpose());
     const Vec3 xr = faces[1] < 0 ? mid : Vec3(face_points.row(faces[1]).transpose());
     const Eigen::Matrix<double, 2, 4> gradient = diamond_gradient(x1, x2, xl, xr);
-    const double area =
-        ((x2 - x1).cross(xl - x1).norm() + (x2 - x1).cross(xr - x1).norm()) / 2;
+    const double area = ((x2 - x1).cross(xl - x1).norm() + (x2 - x1).cross(xr - x1).norm()) / 2;
     const double share = area / (faces[0] < 0 || faces[1] < 0 ? 3 : 4);
     for (Index k = 0; k < 2; ++k) {
       const Index row = 2 * e + k;

@@ -18,7 +18,9 @@ class SurfaceReference : public testing::TestWithParam<const char*> {
     return std::string(CARAT_REFERENCE_DATA) + "/" + GetParam() + "/" + file;
   }
   PolygonMesh mesh() const { return test::read_plain_obj(path("mesh.obj")); }
-  Matrix reference(const std::string& name) const { return test::read_dense_mtx(path(name + ".mtx")); }
+  Matrix reference(const std::string& name) const {
+    return test::read_dense_mtx(path(name + ".mtx"));
+  }
 
   static double difference(const Matrix& a, const Matrix& b) {
     EXPECT_EQ(a.rows(), b.rows());

@@ -33,9 +33,8 @@ HeatGeodesics::HeatGeodesics(const PolygonMesh& mesh, Discretization discretizat
     throw InvalidOption("t_coef is " + std::to_string(options.t_coef) +
                         "; it must be a positive number");
   if (discretization_.n_vertices() != mesh.n_vertices())
-    throw InvalidOption("the discretization has " +
-                        std::to_string(discretization_.n_vertices()) + " vertices, the mesh " +
-                        std::to_string(mesh.n_vertices()));
+    throw InvalidOption("the discretization has " + std::to_string(discretization_.n_vertices()) +
+                        " vertices, the mesh " + std::to_string(mesh.n_vertices()));
   if (discretization_.gradient_dimension == 0)
     throw InvalidOption(
         "the discretization has no gradient; ask for DiscretizationParts::Gradient");

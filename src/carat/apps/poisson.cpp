@@ -99,9 +99,8 @@ Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
                           {v});
     check_finite(value, "Dirichlet value", v);
     if (given[v] && fixed_values_[v] != value)
-      throw InvalidOption("Dirichlet data: vertex " + std::to_string(v) +
-                              " has two values: " + std::to_string(fixed_values_[v]) + " and " +
-                              std::to_string(value),
+      throw InvalidOption("Dirichlet data: vertex " + std::to_string(v) + " has two values: " +
+                              std::to_string(fixed_values_[v]) + " and " + std::to_string(value),
                           {v});
     given[v] = fixed_[v] = true;
     fixed_values_[v] = value;
@@ -124,8 +123,8 @@ Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
 
 PoissonSolution Poisson::solve(const Vector& f) const {
   if (f.size() != system_.rows())
-    throw InvalidOption(std::to_string(f.size()) + " values for " +
-                        std::to_string(system_.rows()) + " vertices");
+    throw InvalidOption(std::to_string(f.size()) + " values for " + std::to_string(system_.rows()) +
+                        " vertices");
   return solve_integrated(mass_ * f);
 }
 
@@ -133,7 +132,8 @@ PoissonSolution Poisson::solve_integrated(const Vector& load) const {
   if (load.size() != system_.rows())
     throw InvalidOption(std::to_string(load.size()) + " values for " +
                         std::to_string(system_.rows()) + " vertices");
-  if (!load.allFinite()) throw InvalidOption("the right-hand side holds a value that is not finite");
+  if (!load.allFinite())
+    throw InvalidOption("the right-hand side holds a value that is not finite");
   PoissonSolution solution;
   Vector b = load + boundary_load_;
 
@@ -185,8 +185,8 @@ PoissonSolution Poisson::solve_integrated(const Vector& load) const {
       row += std::abs(entry.value());
     row_norm = std::max(row_norm, row);
   }
-  const double scale = row_norm * solution.values.lpNorm<Eigen::Infinity>() +
-                       b.lpNorm<Eigen::Infinity>();
+  const double scale =
+      row_norm * solution.values.lpNorm<Eigen::Infinity>() + b.lpNorm<Eigen::Infinity>();
   solution.relative_residual = scale > 0 ? worst / scale : 0;
   return solution;
 }

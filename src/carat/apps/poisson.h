@@ -53,10 +53,10 @@ class Poisson {
   const FactorInfo& info() const { return solver_->info(); }
 
  private:
-  SparseMatrix system_;       // stiffness plus Robin's diagonal
+  SparseMatrix system_;  // stiffness plus Robin's diagonal
   SparseMatrix mass_;
-  Vector boundary_load_;      // Neumann and Robin
-  std::vector<bool> fixed_;   // rows not solved for
+  Vector boundary_load_;     // Neumann and Robin
+  std::vector<bool> fixed_;  // rows not solved for
   Vector fixed_values_;
   std::vector<Index> component_;
   std::vector<bool> floating_;  // component -> has no Dirichlet and no Robin data

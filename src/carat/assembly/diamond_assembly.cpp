@@ -28,8 +28,8 @@ struct EdgeDiamonds {
 /// The values of the corners, faces and rings of faces [begin, end).
 template <bool kOneAnEdge>
 void fill_faces(const SurfaceIncidence& mesh, const FaceRings& rings,
-                const EdgeDiamonds<kOneAnEdge>& diamonds, const Array<double>& weights,
-                Index begin, Index end, DiamondWorkspace& out) {
+                const EdgeDiamonds<kOneAnEdge>& diamonds, const Array<double>& weights, Index begin,
+                Index end, DiamondWorkspace& out) {
   for (Index f = begin; f < end; ++f) {
     const Index first = mesh.faces.begin(f), last = mesh.faces.end(f);
     double* across = out.across.data() + rings.begin(f);

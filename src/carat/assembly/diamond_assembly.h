@@ -29,11 +29,11 @@ struct DiamondTerm {
 struct DiamondWorkspace {
   /// What a corner's face adds to the row of the corner's vertex.
   struct Corner {
-    double beta;       ///< b at the vertex
-    double ring;       ///< b - sum of gamma p_across, at the vertex
-    double side;       ///< coupling of the two ends of the side that starts here
-    double diagonal;   ///< of the stiffness
-    double mass;       ///< of the vertex itself  [length^2]
+    double beta;      ///< b at the vertex
+    double ring;      ///< b - sum of gamma p_across, at the vertex
+    double side;      ///< coupling of the two ends of the side that starts here
+    double diagonal;  ///< of the stiffness
+    double mass;      ///< of the vertex itself  [length^2]
   };
   struct Face {
     double gamma;  ///< Gamma
@@ -48,8 +48,9 @@ struct DiamondWorkspace {
   std::vector<Thread> threads;
 };
 
-/// Fills `stiffness`, whose pattern is diamond_pattern(mesh, rings), with the sum over all diamonds, and
-/// `mass` = P^T M^ P, whose pattern is face_pattern(mesh), or diagonal: then with the row sums.
+/// Fills `stiffness`, whose pattern is diamond_pattern(mesh, rings), with the sum over all
+/// diamonds, and `mass` = P^T M^ P, whose pattern is face_pattern(mesh), or diagonal: then with the
+/// row sums.
 /// \param terms           the diamonds
 /// \param edge_diamonds   edge -> first diamond, n_edges + 1 numbers; empty: one diamond an edge
 /// \param weights         corner -> affine weight

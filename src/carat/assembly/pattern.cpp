@@ -45,7 +45,8 @@ SparseMatrix symmetric_pattern(const SurfaceIncidence& mesh, int threads, const 
     for (Index row = begin; row < end; ++row) {
       if (row == begin + kSample)
         collector.columns.reserve(collector.columns.size() / kSample *
-                                      static_cast<std::size_t>(end - begin) * 9 / 8 + 64);
+                                      static_cast<std::size_t>(end - begin) * 9 / 8 +
+                                  64);
       const std::size_t before = collector.columns.size();
       collect(row, collector);
       row_sizes[row] = static_cast<Index>(collector.columns.size() - before);
@@ -94,7 +95,8 @@ SparseMatrix allocate_rows(Index n_rows, Index n_cols, const Array<Index>& row_s
 }
 
 SparseMatrix diagonal_pattern(Index n) {
-  SparseMatrix matrix = allocate_rows(n, n, Array<Index>(static_cast<std::size_t>(n), 1), "a matrix");
+  SparseMatrix matrix =
+      allocate_rows(n, n, Array<Index>(static_cast<std::size_t>(n), 1), "a matrix");
   for (Index row = 0; row < n; ++row) matrix.innerIndexPtr()[row] = row;
   return matrix;
 }
@@ -111,9 +113,8 @@ FaceRings face_rings(const SurfaceIncidence& mesh, int threads) {
   parallel_blocks(n, threads, [&](int, Index begin, Index end) {
     for (Index f = begin; f < end; ++f) {
       std::int64_t size = 0;
-      for_sides_across(f, [&](Index side) {
-        size += mesh.faces.size(mesh.corner_faces[side]) - 2;
-      });
+      for_sides_across(f,
+                       [&](Index side) { size += mesh.faces.size(mesh.corner_faces[side]) - 2; });
       rings.offsets[f + 1] = size;
     }
   });
@@ -139,15 +140,14 @@ SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads) {
 }
 
 SparseMatrix diamond_pattern(const SurfaceIncidence& mesh, const FaceRings& rings, int threads) {
-  return symmetric_pattern(
-      mesh, threads, "the diamond stiffness", [&](Index row, Collector& out) {
-        for (const Index corner : mesh.vertex_corners.row(row)) {
-          const Index f = mesh.corner_faces[corner];
-          for (const Index v : mesh.faces.row(f)) out.add(v, row);
-          for (std::int64_t k = rings.begin(f); k < rings.end(f); ++k)
-            out.add(rings.vertices[static_cast<std::size_t>(k)], row);
-        }
-      });
+  return symmetric_pattern(mesh, threads, "the diamond stiffness", [&](Index row, Collector& out) {
+    for (const Index corner : mesh.vertex_corners.row(row)) {
+      const Index f = mesh.corner_faces[corner];
+      for (const Index v : mesh.faces.row(f)) out.add(v, row);
+      for (std::int64_t k = rings.begin(f); k < rings.end(f); ++k)
+        out.add(rings.vertices[static_cast<std::size_t>(k)], row);
+    }
+  });
 }
 
 }  // namespace carat

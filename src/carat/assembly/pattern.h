@@ -9,15 +9,15 @@ namespace carat {
 
 /// Connectivity of a surface as the assembly sees it: faces of corners, edges of corners.
 struct SurfaceIncidence {
-  const Csr& faces;                   ///< face -> vertices
-  const Array<Index>& corner_faces;   ///< corner -> face
-  const Array<Index>& corner_edges;   ///< corner -> edge
-  const Csr& edge_corners;            ///< edge -> corners
-  const Csr& vertex_corners;          ///< vertex -> corners
+  const Csr& faces;                  ///< face -> vertices
+  const Array<Index>& corner_faces;  ///< corner -> face
+  const Array<Index>& corner_edges;  ///< corner -> edge
+  const Csr& edge_corners;           ///< edge -> corners
+  const Csr& vertex_corners;         ///< vertex -> corners
 };
 
-/// The vertices that each face reaches across its sides: those of the faces there without the side's
-/// two ends, side by side and by corner. A vertex can occur more than once.
+/// The vertices that each face reaches across its sides: those of the faces there without the
+/// side's two ends, side by side and by corner. A vertex can occur more than once.
 struct FaceRings {
   Array<std::int64_t> offsets;
   Array<Index> vertices;

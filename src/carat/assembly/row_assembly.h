@@ -14,8 +14,7 @@ namespace carat {
 class RowWriter {
  public:
   /// Zeroes the row. \param position  one place a column; only those of the row are set and read
-  RowWriter(SparseMatrix& matrix, Index row, Array<Index>& position)
-      : position_(position.data()) {
+  RowWriter(SparseMatrix& matrix, Index row, Array<Index>& position) : position_(position.data()) {
     const Index begin = matrix.outerIndexPtr()[row], end = matrix.outerIndexPtr()[row + 1];
     values_ = matrix.valuePtr();
     const Index* const columns = matrix.innerIndexPtr();

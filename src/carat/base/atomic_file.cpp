@@ -22,8 +22,7 @@ fs::path create_beside(const fs::path& path) {
   if (!fs::is_directory(folder, ignored))
     throw IoError(path.string() + ": the folder " + folder.string() +
                   " does not exist; create it first");
-  if (fs::is_directory(path, ignored))
-    throw IoError(path.string() + ": is a folder; name a file");
+  if (fs::is_directory(path, ignored)) throw IoError(path.string() + ": is a folder; name a file");
   for (int attempt = 0; attempt < 1000; ++attempt) {
     const fs::path candidate =
         folder / (path.stem().string() + ".part" + std::to_string(::getpid()) + "-" +

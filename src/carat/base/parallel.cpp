@@ -11,8 +11,7 @@ int resolve_threads(int requested) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-void parallel_blocks(Index n, int threads,
-                     const std::function<void(int, Index, Index)>& body) {
+void parallel_blocks(Index n, int threads, const std::function<void(int, Index, Index)>& body) {
   // Below this a thread costs more than it saves.
   constexpr Index kSerialBelow = 2048;
   const int blocks = n < kSerialBelow ? 1 : std::min<int>(resolve_threads(threads), n);

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
-
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -88,7 +88,7 @@ PolygonMesh icosahedral_triangles(Index n) {
   Csr faces;
   std::vector<Index> row, next_row;
   for (Index patch = 0; patch < 20; ++patch) {
-    const auto [a, b, c] = patches[patch];
+    const Index a = patches[patch][0], b = patches[patch][1], c = patches[patch][2];
     Index k = 0;
     const auto number_row = [&](Index j) {
       next_row.clear();

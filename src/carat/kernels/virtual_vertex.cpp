@@ -91,7 +91,8 @@ bool VirtualVertexKernel::set_weights_in_space(double* weights) {
   Vec3 coefficient = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
     if (values[k] > kRankCut * values[2])
-      coefficient += eigen.eigenvectors().col(k) * (eigen.eigenvectors().col(k).dot(offset_) / values[k]);
+      coefficient +=
+          eigen.eigenvectors().col(k) * (eigen.eigenvectors().col(k).dot(offset_) / values[k]);
   for (int i = 0; i < n_; ++i) weights[i] = 1.0 / n_ + x_[i].dot(coefficient);
   return true;
 }
@@ -175,9 +176,9 @@ bool VirtualVertexKernel::find_kernel_centroid() {
 }
 
 bool VirtualVertexKernel::minimise_trace() {
-  // Trace of the fan's cotan stiffness, T(y) = sum (|e_i|^2 + |y - y_i|^2 + |y - y_{i+1}|^2) / (4 A_i):
-  // strictly convex inside the kernel, infinite at its border, so damped Newton finds its only
-  // minimum from any point of the kernel.
+  // Trace of the fan's cotan stiffness, T(y) = sum (|e_i|^2 + |y - y_i|^2 + |y - y_{i+1}|^2) / (4
+  // A_i): strictly convex inside the kernel, infinite at its border, so damped Newton finds its
+  // only minimum from any point of the kernel.
   if (flips_a_triangle<0>() && !find_kernel_centroid()) return false;
   for (int i = 0; i < n_; ++i) plane_[i] = Vec2(x_[i].dot(axis_s_), x_[i].dot(axis_t_)) / size_;
   Vec2 y(offset_.dot(axis_s_) / size_, offset_.dot(axis_t_) / size_);
@@ -214,8 +215,8 @@ bool VirtualVertexKernel::minimise_trace() {
     const double decrease = gradient.dot(newton);
     if (!newton.allFinite() || !(decrease < 0)) break;
     double length = 1;
-    while (length > kNoise && !(evaluate(y + length * newton, nullptr, nullptr) <=
-                                value + 0.1 * length * decrease))
+    while (length > kNoise &&
+           !(evaluate(y + length * newton, nullptr, nullptr) <= value + 0.1 * length * decrease))
       length /= 2;
     if (length <= kNoise) break;
     y += length * newton;
@@ -303,11 +304,16 @@ VirtualVertexStatus VirtualVertexKernel::compute(const Points& points, std::span
     plane_.resize(face.size());
   }
   switch (n_) {
-    case 3: return compute_triangle(points, face.data(), weights, triangles);
-    case 4: return compute_polygon<4>(points, face.data(), weights, triangles);
-    case 5: return compute_polygon<5>(points, face.data(), weights, triangles);
-    case 6: return compute_polygon<6>(points, face.data(), weights, triangles);
-    default: return compute_polygon<0>(points, face.data(), weights, triangles);
+    case 3:
+      return compute_triangle(points, face.data(), weights, triangles);
+    case 4:
+      return compute_polygon<4>(points, face.data(), weights, triangles);
+    case 5:
+      return compute_polygon<5>(points, face.data(), weights, triangles);
+    case 6:
+      return compute_polygon<6>(points, face.data(), weights, triangles);
+    default:
+      return compute_polygon<0>(points, face.data(), weights, triangles);
   }
 }
 

@@ -31,10 +31,10 @@ struct VirtualVertexRule {
 
 /// How the virtual vertex of a face came about.
 enum class VirtualVertexStatus : unsigned char {
-  Regular,      ///< as asked for
-  Moved,        ///< it flipped a virtual triangle and now lies in the kernel's centroid
-  Flipped,      ///< it flips a virtual triangle: the kernel is empty, or moving was switched off
-  Degenerate,   ///< the face has no area to speak of: mean of the vertices
+  Regular,     ///< as asked for
+  Moved,       ///< it flipped a virtual triangle and now lies in the kernel's centroid
+  Flipped,     ///< it flips a virtual triangle: the kernel is empty, or moving was switched off
+  Degenerate,  ///< the face has no area to speak of: mean of the vertices
 };
 
 /// One virtual triangle (x_i, x_{i+1}, x_f), seen from its hinge (x_i, x_{i+1}).
@@ -84,10 +84,10 @@ class VirtualVertexKernel {
 
   VirtualVertexRule rule_;
   int n_ = 0;
-  std::vector<Vec3> x_;        // vertices relative to their mean
+  std::vector<Vec3> x_;  // vertices relative to their mean
   Vec3 mean_, area_vector_, normal_, axis_s_, axis_t_;
-  Vec3 offset_;                // virtual vertex relative to the mean
-  double size_ = 0;            // largest distance of a vertex from the mean
+  Vec3 offset_;      // virtual vertex relative to the mean
+  double size_ = 0;  // largest distance of a vertex from the mean
   std::vector<Vec2> plane_, clipped_, clip_scratch_;
 };
 

@@ -168,9 +168,12 @@ unsigned virtual_vertex_block(int valence, const double* points, const Index* co
                               bool centroid, double* const* weights,
                               VirtualTriangle* const* triangles) {
   switch (valence) {
-    case 4: return block_4(points, faces, centroid, weights, triangles);
-    case 5: return block_5(points, faces, centroid, weights, triangles);
-    default: return block_6(points, faces, centroid, weights, triangles);
+    case 4:
+      return block_4(points, faces, centroid, weights, triangles);
+    case 5:
+      return block_5(points, faces, centroid, weights, triangles);
+    default:
+      return block_6(points, faces, centroid, weights, triangles);
   }
 }
 

@@ -23,11 +23,11 @@ struct MeshStatistics {
   Index nonmanifold_vertices = 0;       ///< vertices whose faces form more than one fan
   Index inconsistent_edges = 0;  ///< edges of two faces that run along them in the same direction
   Index unreferenced_vertices = 0;
-  Index nonplanar_faces = 0;   ///< farther than 1e-6 of their diameter from their mean plane
-  Index nonconvex_faces = 0;   ///< a reflex corner, seen along their vector area
-  Index degenerate_faces = 0;  ///< area <= 1e-13 of their squared diameter
-  Index duplicate_faces = 0;   ///< the same vertex set as a face before
-  Index dropped_corners = 0;   ///< vertices that repeated their predecessor in a face
+  Index nonplanar_faces = 0;       ///< farther than 1e-6 of their diameter from their mean plane
+  Index nonconvex_faces = 0;       ///< a reflex corner, seen along their vector area
+  Index degenerate_faces = 0;      ///< area <= 1e-13 of their squared diameter
+  Index duplicate_faces = 0;       ///< the same vertex set as a face before
+  Index dropped_corners = 0;       ///< vertices that repeated their predecessor in a face
   Index euler_characteristic = 0;  ///< V - E + F, without unreferenced vertices
   double area = 0;                 ///< sum of |vector area| of the faces          [length^2]
   double enclosed_volume = 0;      ///< signed; closed consistent meshes only      [length^3]

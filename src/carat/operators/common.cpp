@@ -23,8 +23,7 @@ double coefficient_at(const DiscretizationOptions& options, const Vec3& centroid
 }
 
 void report_degenerate(std::vector<Index> samples, const DiscretizationOptions& options,
-                       const std::string& kind,
-                       const std::function<std::string(Index)>& describe,
+                       const std::string& kind, const std::function<std::string(Index)>& describe,
                        Diagnostics& diagnostics) {
   if (options.degenerate == DegeneratePolicy::Strict && !samples.empty()) {
     const std::string message =

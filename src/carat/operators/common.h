@@ -17,8 +17,7 @@ double coefficient_at(const DiscretizationOptions& options, const Vec3& centroid
 /// \param describe  the first sample in words: its vertices and its measure
 /// \throws DegenerateElement
 void report_degenerate(std::vector<Index> samples, const DiscretizationOptions& options,
-                       const std::string& kind,
-                       const std::function<std::string(Index)>& describe,
+                       const std::string& kind, const std::function<std::string(Index)>& describe,
                        Diagnostics& diagnostics);
 
 /// Lists the vertices without a face: their rows and columns are empty.

@@ -28,8 +28,8 @@ Points average_parts(const Discretization& d, const Vector& vectors, Index n_row
   Vector area = Vector::Zero(n_rows);
   for (const GradientFrames::Part& part : d.frames.parts) {
     const Vec3 vector =
-        part.axes * vectors.segment(Eigen::Index{part.sample} * d.gradient_dimension,
-                                    d.gradient_dimension);
+        part.axes *
+        vectors.segment(Eigen::Index{part.sample} * d.gradient_dimension, d.gradient_dimension);
     visit(part, [&](Index row) {
       sum.row(row) += part.area * vector.transpose();
       area[row] += part.area;

@@ -47,9 +47,9 @@ struct DiscretizationOptions {
 struct GradientFrames {
   struct Part {
     Index sample, face;
-    double area;                                         ///< [length^2]
+    double area;                                             ///< [length^2]
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> axes;  ///< columns: the frame's unit vectors
-    std::array<Index, 3> vertices;                       ///< mesh vertices it touches, -1: none
+    std::array<Index, 3> vertices;                           ///< mesh vertices it touches, -1: none
   };
   std::vector<Part> parts;
 };
@@ -67,8 +67,8 @@ struct Discretization {
   /// Empty unless asked for.
   SparseMatrix gradient;
   Index gradient_dimension = 0;
-  Vector sample_measure;   ///< area of every sample, 0 where degenerate  [length^2]
-  GradientFrames frames;   ///< empty unless asked for
+  Vector sample_measure;  ///< area of every sample, 0 where degenerate  [length^2]
+  GradientFrames frames;  ///< empty unless asked for
   Diagnostics diagnostics;
 
   Index n_vertices() const { return static_cast<Index>(stiffness.rows()); }

@@ -112,20 +112,28 @@ void report_virtual_vertices(const VirtualVertices& virtuals, Diagnostics& diagn
   std::vector<Index> moved, flipped, degenerate;
   for (Index f = 0; f < static_cast<Index>(virtuals.status.size()); ++f) {
     switch (virtuals.status[f]) {
-      case VirtualVertexStatus::Regular: break;
-      case VirtualVertexStatus::Moved: moved.push_back(f); break;
-      case VirtualVertexStatus::Flipped: flipped.push_back(f); break;
-      case VirtualVertexStatus::Degenerate: degenerate.push_back(f); break;
+      case VirtualVertexStatus::Regular:
+        break;
+      case VirtualVertexStatus::Moved:
+        moved.push_back(f);
+        break;
+      case VirtualVertexStatus::Flipped:
+        flipped.push_back(f);
+        break;
+      case VirtualVertexStatus::Degenerate:
+        degenerate.push_back(f);
+        break;
     }
   }
   diagnostics.add("moved_virtual_vertices",
                   "faces whose virtual vertex flipped a triangle and was moved to the centroid of "
                   "the face's kernel",
                   std::move(moved));
-  diagnostics.add("flipped_virtual_vertices",
-                  "faces whose virtual vertex flips a triangle and was left where it is (no kernel, "
-                  "or moving was switched off): semidefinite, but linear precision is not promised",
-                  std::move(flipped));
+  diagnostics.add(
+      "flipped_virtual_vertices",
+      "faces whose virtual vertex flips a triangle and was left where it is (no kernel, "
+      "or moving was switched off): semidefinite, but linear precision is not promised",
+      std::move(flipped));
   diagnostics.add("degenerate_faces",
                   "faces without area; their virtual vertex is the mean of their vertices",
                   std::move(degenerate));

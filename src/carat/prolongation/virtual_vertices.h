@@ -9,9 +9,9 @@ namespace carat {
 
 /// One virtual vertex a face, with the virtual triangles it spans with the face's sides.
 struct VirtualVertices {
-  Array<double> weights;             ///< corner -> affine weight of its vertex   [BBA21 (15)]
-  Array<VirtualTriangle> triangles;  ///< corner -> triangle over the side it stands for
-  Array<VirtualVertexStatus> status; ///< face -> how its point came about
+  Array<double> weights;              ///< corner -> affine weight of its vertex   [BBA21 (15)]
+  Array<VirtualTriangle> triangles;   ///< corner -> triangle over the side it stands for
+  Array<VirtualVertexStatus> status;  ///< face -> how its point came about
 };
 
 /// \param points   positions to use, (n_vertices, 3): the mesh's own or others  [length]

@@ -28,7 +28,7 @@ struct Reduction {
   std::vector<Index> kept;        // reduced -> full
   std::vector<Index> reduced_of;  // full -> reduced, -1: fixed
   std::vector<Index> offsets, columns;
-  std::vector<Index> source;      // reduced entry -> position in the full matrix's values
+  std::vector<Index> source;  // reduced entry -> position in the full matrix's values
 
   Reduction(const SparseMatrix& matrix, const std::vector<bool>& fixed) {
     const Index n = static_cast<Index>(matrix.rows());
@@ -244,8 +244,9 @@ Matrix SpdSolver::solve(const Matrix& rhs) const {
     for (Index i = 0; i < reduction.size(); ++i) reduced(i, k) = rhs(reduction.kept[i], k);
   impl_->back_solve(reduced);
   if (!reduced.allFinite())
-    throw SolverFailure("the solution is not finite: the right-hand side or the matrix holds "
-                        "values that are not, or the system is numerically singular");
+    throw SolverFailure(
+        "the solution is not finite: the right-hand side or the matrix holds "
+        "values that are not, or the system is numerically singular");
   for (Eigen::Index k = 0; k < rhs.cols(); ++k)
     for (Index i = 0; i < reduction.size(); ++i) result(reduction.kept[i], k) = reduced(i, k);
   return result;
@@ -308,8 +309,10 @@ Matrix SemidefiniteSolver::solve(Matrix rhs) const {
         if (components_[row] >= 0) sum[components_[row]] += values(static_cast<Index>(row), k);
       for (std::size_t row = 0; row < components_.size(); ++row) {
         const Index c = components_[row];
-        if (c >= 0) values(static_cast<Index>(row), k) -= sum[c] / sizes_[c];
-        else values(static_cast<Index>(row), k) = 0;
+        if (c >= 0)
+          values(static_cast<Index>(row), k) -= sum[c] / sizes_[c];
+        else
+          values(static_cast<Index>(row), k) = 0;
       }
     }
   };

@@ -11,9 +11,9 @@ namespace carat {
 
 /// What a factorisation cost and gave.
 struct FactorInfo {
-  std::string method;        ///< e.g. "CHOLMOD supernodal"
-  std::string ordering;      ///< fill-reducing ordering that was chosen
-  std::int64_t nonzeros = 0; ///< in the factor
+  std::string method;         ///< e.g. "CHOLMOD supernodal"
+  std::string ordering;       ///< fill-reducing ordering that was chosen
+  std::int64_t nonzeros = 0;  ///< in the factor
   double analyse_seconds = 0, factor_seconds = 0;
 };
 

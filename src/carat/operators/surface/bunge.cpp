@@ -50,7 +50,9 @@ class BungeAssembly final : public Assembly {
     double spokes, area;
   };
 
-  Index previous_in_face(Index f, Index a) const { return a == 0 ? mesh_.faces().size(f) - 1 : a - 1; }
+  Index previous_in_face(Index f, Index a) const {
+    return a == 0 ? mesh_.faces().size(f) - 1 : a - 1;
+  }
   Index next_in_face(Index f, Index a) const { return a + 1 == mesh_.faces().size(f) ? 0 : a + 1; }
 
   void compute_terms(const Points& points);
@@ -92,8 +94,8 @@ void BungeAssembly::compute_terms(const Points& points) {
         const VirtualTriangle t = virtuals_.triangles[c];
         const double length2 =
             (points.row(faces.indices[next]) - points.row(faces.indices[c])).squaredNorm();
-        const double size2 = std::max(
-            length2, t.foot * t.foot * length2 + t.double_area * t.double_area / length2);
+        const double size2 =
+            std::max(length2, t.foot * t.foot * length2 + t.double_area * t.double_area / length2);
         result_.sample_measure[c] = 0;
         if (!(t.double_area > 2 * options_.eps_rel * size2)) continue;
         const double k = options_.coefficient ? coefficient[c] : 1.0;
@@ -119,28 +121,26 @@ void BungeAssembly::assemble_matrices() {
       result_.stiffness, incidence_, false, options_.threads, [&](Index f, Index a, Index b) {
         const CornerTerm* const term = corners_.data() + faces.begin(f);
         const double* const p = virtuals_.weights.data() + faces.begin(f);
-        double value =
-            faces_[f].spokes * p[a] * p[b] - term[a].spoke * p[b] - term[b].spoke * p[a];
+        double value = faces_[f].spokes * p[a] * p[b] - term[a].spoke * p[b] - term[b].spoke * p[a];
         if (a == b) value += term[a].side + term[previous_in_face(f, a)].side + term[a].spoke;
         if (b == next_in_face(f, a)) value -= term[a].side;
         if (a == next_in_face(f, b)) value -= term[b].side;
         return value;
       });
-  assemble_face_blocks(
-      result_.mass, incidence_, options_.lumped_mass, options_.threads,
-      [&](Index f, Index a, Index b) {
-        const CornerTerm* const term = corners_.data() + faces.begin(f);
-        const double* const p = virtuals_.weights.data() + faces.begin(f);
-        const auto around = [&](Index i) {
-          return term[i].area + term[previous_in_face(f, i)].area;
-        };
-        double value = faces_[f].area / 6 * p[a] * p[b] + around(a) / 12 * p[b] +
-                       around(b) / 12 * p[a];
-        if (a == b) value += around(a) / 6;
-        if (b == next_in_face(f, a)) value += term[a].area / 12;
-        if (a == next_in_face(f, b)) value += term[b].area / 12;
-        return value;
-      });
+  assemble_face_blocks(result_.mass, incidence_, options_.lumped_mass, options_.threads,
+                       [&](Index f, Index a, Index b) {
+                         const CornerTerm* const term = corners_.data() + faces.begin(f);
+                         const double* const p = virtuals_.weights.data() + faces.begin(f);
+                         const auto around = [&](Index i) {
+                           return term[i].area + term[previous_in_face(f, i)].area;
+                         };
+                         double value = faces_[f].area / 6 * p[a] * p[b] + around(a) / 12 * p[b] +
+                                        around(b) / 12 * p[a];
+                         if (a == b) value += around(a) / 6;
+                         if (b == next_in_face(f, a)) value += term[a].area / 12;
+                         if (a == next_in_face(f, b)) value += term[b].area / 12;
+                         return value;
+                       });
 }
 
 void BungeAssembly::make_gradient_pattern() {

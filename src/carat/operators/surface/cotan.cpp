@@ -1,10 +1,11 @@
 // The cotan Laplacian of triangle meshes: Pinkall, Polthier 1993; Desbrun, Meyer, Schroeder,
 // Barr 1999. S_ij = -(cot a + cot b)/2; the mass is lumped by thirds of triangles.
 
+#include "carat/kernels/cotan.h"
+
 #include "carat/assembly/row_assembly.h"
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
-#include "carat/kernels/cotan.h"
 #include "carat/operators/common.h"
 #include "carat/operators/registry.h"
 #include "carat/operators/surface/incidence.h"
@@ -38,10 +39,9 @@ class CotanAssembly final : public Assembly {
                            if (a == b) return (cot[(a + 1) % 3] + cot[(a + 2) % 3]) / 2;
                            return -cot[3 - a - b] / 2;
                          });
-    assemble_face_blocks(result_.mass, incidence_, true, options_.threads,
-                         [&](Index f, Index a, Index b) {
-                           return a == b ? result_.sample_measure[f] / 3 : 0.0;
-                         });
+    assemble_face_blocks(
+        result_.mass, incidence_, true, options_.threads,
+        [&](Index f, Index a, Index b) { return a == b ? result_.sample_measure[f] / 3 : 0.0; });
     if (options_.parts != DiscretizationParts::Matrices) assemble_gradient(points);
     if (options_.parts == DiscretizationParts::Frames) collect_frames();
     report();
@@ -59,9 +59,9 @@ class CotanAssembly final : public Assembly {
       coefficient.resize(static_cast<std::size_t>(mesh_.n_faces()));
       for (Index f = 0; f < mesh_.n_faces(); ++f)
         coefficient[f] = coefficient_at(
-            options_, (corner_point(points, f, 0) + corner_point(points, f, 1) +
-                       corner_point(points, f, 2)) /
-                          3);
+            options_,
+            (corner_point(points, f, 0) + corner_point(points, f, 1) + corner_point(points, f, 2)) /
+                3);
     }
     parallel_blocks(mesh_.n_faces(), options_.threads, [&](int, Index begin, Index end) {
       for (Index f = begin; f < end; ++f) {
@@ -69,8 +69,8 @@ class CotanAssembly final : public Assembly {
         for (Index a = 0; a < 3; ++a)
           side[a] = corner_point(points, f, (a + 2) % 3) - corner_point(points, f, (a + 1) % 3);
         const double double_area = side[0].cross(side[1]).norm();
-        const double size2 = std::max(
-            {side[0].squaredNorm(), side[1].squaredNorm(), side[2].squaredNorm()});
+        const double size2 =
+            std::max({side[0].squaredNorm(), side[1].squaredNorm(), side[2].squaredNorm()});
         const bool sound = double_area > 2 * options_.eps_rel * size2;
         const double k = sound && options_.coefficient ? coefficient[f] : 1.0;
         result_.sample_measure[f] = sound ? double_area / 2 : 0;
@@ -86,10 +86,9 @@ class CotanAssembly final : public Assembly {
       throw InvalidMesh("the gradient of " + std::to_string(mesh_.n_faces()) +
                         " triangles has more rows than 32 bits can number; split the mesh");
     result_.gradient_dimension = 3;
-    result_.gradient =
-        allocate_rows(3 * mesh_.n_faces(), mesh_.n_vertices(),
-                      Array<Index>(3 * static_cast<std::size_t>(mesh_.n_faces()), 3),
-                      "the gradient on triangles");
+    result_.gradient = allocate_rows(3 * mesh_.n_faces(), mesh_.n_vertices(),
+                                     Array<Index>(3 * static_cast<std::size_t>(mesh_.n_faces()), 3),
+                                     "the gradient on triangles");
     for (Index f = 0; f < mesh_.n_faces(); ++f) {
       std::array<Index, 3> v{mesh_.face(f)[0], mesh_.face(f)[1], mesh_.face(f)[2]};
       std::sort(v.begin(), v.end());

@@ -38,9 +38,7 @@ class DiamondAssembly final : public Assembly {
   void collect_frames(const Points& points);
   void report();
 
-  Index first_diamond(Index e) const {
-    return edge_diamonds_.empty() ? e : edge_diamonds_[e];
-  }
+  Index first_diamond(Index e) const { return edge_diamonds_.empty() ? e : edge_diamonds_[e]; }
   Index end_diamond(Index e) const {
     return edge_diamonds_.empty() ? e + 1 : edge_diamonds_[e + 1];
   }
@@ -101,7 +99,7 @@ void DiamondAssembly::find_diamonds() {
   terms_.resize(static_cast<std::size_t>(manifold ? edges.size() : edge_diamonds_.back()));
   parallel_blocks(edges.size(), options_.threads, [&](int, Index begin, Index end) {
     for (Index e = begin; e < end; ++e) {
-      const auto [v1, v2] = edges.vertices[e];
+      const Index v1 = edges.vertices[e][0], v2 = edges.vertices[e][1];
       const std::span<const Index> around = corners.row(e);
       // Left is the face that runs along the hinge from v1 to v2. Where both do, or neither, it
       // is the one that comes first.
@@ -131,12 +129,11 @@ void DiamondAssembly::order_nonmanifold_faces(const Points& points) {
     around.clear();
     Vec3 reference = Vec3::Zero();
     for (const Index corner : edges.corners.row(e)) {
-      const Vec3 to_face =
-          Vec3(face_points.row(mesh_.corner_faces()[corner]).transpose()) - x1;
+      const Vec3 to_face = Vec3(face_points.row(mesh_.corner_faces()[corner]).transpose()) - x1;
       const Vec3 normal = hinge.cross(to_face);
       if (reference.isZero(0)) reference = normal;
-      double angle = std::atan2(reference.cross(normal).dot(hinge.normalized()),
-                                reference.dot(normal));
+      double angle =
+          std::atan2(reference.cross(normal).dot(hinge.normalized()), reference.dot(normal));
       if (angle < 0) angle += 2 * std::numbers::pi;
       around.push_back({angle, corner});
     }
@@ -168,8 +165,7 @@ void DiamondAssembly::compute_terms(const Points& points) {
         moment += area * ((x2 - x1) + (xf - x1)) / 3;
         weight += area;
       }
-      coefficient[d] =
-          weight > 0 ? coefficient_at(options_, x1 + moment / weight) : 1.0;
+      coefficient[d] = weight > 0 ? coefficient_at(options_, x1 + moment / weight) : 1.0;
     }
   }
   parallel_blocks(n_diamonds(), options_.threads, [&](int, Index begin, Index end) {
@@ -276,14 +272,14 @@ void DiamondAssembly::collect_frames(const Points& points) {
     const DiamondTerm& term = terms_[d];
     if (!(result_.sample_measure[d] > 0)) continue;
     const Vec3 x1 = points.row(term.v1).transpose();
-    const Vec3 u = (Vec3(points.row(term.v2).transpose()) - x1).normalized();   // (10)
+    const Vec3 u = (Vec3(points.row(term.v2).transpose()) - x1).normalized();  // (10)
     const double part = edge_diamonds_.empty() ? 1.0 : share(edge_of(d));
     for (const bool left : {true, false}) {
       const Index corner = left ? term.left : term.right;
       if (corner < 0) continue;
       const Index f = mesh_.corner_faces()[corner];
       const Vec3 to_face = Vec3(face_points_.row(f).transpose()) - x1;
-      Vec3 v = to_face - u * u.dot(to_face);   // (11)
+      Vec3 v = to_face - u * u.dot(to_face);  // (11)
       const double height = v.norm();
       if (!(height > 0)) continue;
       v *= (left ? 1 : -1) / height;
