@@ -60,13 +60,13 @@ void run(Session& session, const Options& options) {
   SurfaceData data = read_input(session, options.input);
   check_sources(options.sources, data.mesh.n_vertices());
   const bool writes = !options.output.empty();
-  const Discretization discretization =
+  Discretization discretization =
       discretize(session, data.mesh, options.discretization,
                  writes ? DiscretizationParts::Frames : DiscretizationParts::Gradient);
   const TimeStepLength length =
       options.edge_length == "mean" ? TimeStepLength::MeanEdge : TimeStepLength::MaxEdge;
   const HeatGeodesics geodesics = session.phase("factor", [&] {
-    return HeatGeodesics(data.mesh, discretization, {options.t_coef, length});
+    return HeatGeodesics(data.mesh, std::move(discretization), {options.t_coef, length});
   });
   std::vector<GeodesicSource> sources;
   for (const Index v : options.sources) sources.push_back({v});
@@ -84,7 +84,7 @@ void run(Session& session, const Options& options) {
   report_distance(session, distance);
   if (!writes) return;
   data.fields.vertex = {scalar_field("distance", distance.values)};
-  data.fields.face = {direction_field(discretization, distance.values, data.mesh.n_faces())};
+  data.fields.face = {direction_field(geodesics.discretization(), distance.values, data.mesh.n_faces())};
   write_output(session, options.output, "Geodesic distance", data);
 }
 

@@ -47,6 +47,7 @@ class HeatGeodesics {
   GeodesicDistance distance(const std::vector<GeodesicSource>& sources) const;
   GeodesicDistance distance(Index source) const { return distance({GeodesicSource{source}}); }
 
+  const Discretization& discretization() const { return discretization_; }
   double time_step() const { return time_step_; }  ///< t  [length^2]
   const FactorInfo& heat_info() const { return heat_->info(); }
   const FactorInfo& poisson_info() const { return poisson_->info(); }
