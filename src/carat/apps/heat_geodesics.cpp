@@ -90,7 +90,8 @@ GeodesicDistance HeatGeodesics::distance(const std::vector<GeodesicSource>& sour
     } else {
       g.setZero();
       if (discretization_.sample_measure[s] > 0) {
-        const SparseMatrix::InnerIterator entry(discretization_.gradient, s * dimension);
+        const SparseMatrix::InnerIterator entry(discretization_.gradient,
+                                                static_cast<Eigen::Index>(s) * dimension);
         if (entry && component[entry.col()] >= 0 && reached[component[entry.col()]])
           ++result.unresolved_samples;
       }

@@ -24,9 +24,8 @@ fs::path create_beside(const fs::path& path) {
                   " does not exist; create it first");
   if (fs::is_directory(path, ignored)) throw IoError(path.string() + ": is a folder; name a file");
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    const fs::path candidate =
-        folder / (path.stem().string() + ".part" + std::to_string(::getpid()) + "-" +
-                  std::to_string(attempt) + path.extension().string());
+    fs::path candidate = folder / (path.stem().string() + ".part" + std::to_string(::getpid()) +
+                                   "-" + std::to_string(attempt) + path.extension().string());
     const int handle = ::open(candidate.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     if (handle >= 0) {
       ::close(handle);
