@@ -84,7 +84,8 @@ void run(Session& session, const Options& options) {
   report_distance(session, distance);
   if (!writes) return;
   data.fields.vertex = {scalar_field("distance", distance.values)};
-  data.fields.face = {direction_field(geodesics.discretization(), distance.values, data.mesh.n_faces())};
+  data.fields.face = {
+      direction_field(geodesics.discretization(), distance.values, data.mesh.n_faces())};
   write_output(session, options.output, "Geodesic distance", data);
 }
 
