@@ -48,7 +48,7 @@ struct DiamondWorkspace {
   std::vector<Thread> threads;
 };
 
-/// Fills `stiffness`, whose pattern is diamond_pattern(mesh, rings), with the sum over all
+/// Fills `stiffness`, whose pattern is that of diamond_patterns(mesh, rings), with the sum over all
 /// diamonds, and `mass` = P^T M^ P, whose pattern is face_pattern(mesh), or diagonal: then with the
 /// row sums.
 /// \param terms           the diamonds

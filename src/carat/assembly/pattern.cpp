@@ -24,20 +24,22 @@ struct Collector {
   Array<Index> columns;
 };
 
-/// A symmetric pattern from a function that collects one row's columns in any order. Row sizes
-/// come from the first pass; the second writes the transpose, which is the same pattern with every
-/// row ascending, so that nothing is ever sorted.
+/// Rows [begin, end) of a pattern, columns in the order they were met.
+struct Rows {
+  Index begin = 0, end = 0;
+  Array<Index> columns;
+};
+
+/// Collects the rows of a symmetric pattern in any order; `collect` returns how many of a row's
+/// first columns make up the row of a second pattern inside it. write_transposed then writes the
+/// transposes, which are the same patterns with every row ascending: nothing is ever sorted.
 template <class Collect>
-SparseMatrix symmetric_pattern(const SurfaceIncidence& mesh, int threads, const char* what,
-                               const Collect& collect) {
+std::vector<Rows> collect_rows(const SurfaceIncidence& mesh, int threads, Array<Index>& sizes,
+                               Array<Index>& inner_sizes, const Collect& collect) {
   const Index n = mesh.vertex_corners.n_rows();
-  threads = resolve_threads(threads);
-  Array<Index> row_sizes(static_cast<std::size_t>(n));
-  struct Part {
-    Index begin = 0, end = 0;
-    Array<Index> columns;
-  };
-  std::vector<Part> parts(static_cast<std::size_t>(threads));
+  sizes.resize(static_cast<std::size_t>(n));
+  inner_sizes.resize(static_cast<std::size_t>(n));
+  std::vector<Rows> parts(static_cast<std::size_t>(resolve_threads(threads)));
   parallel_blocks(n, threads, [&](int block, Index begin, Index end) {
     Collector collector(n);
     // Guess the size from the first rows, so that the array rarely grows.
@@ -48,30 +50,35 @@ SparseMatrix symmetric_pattern(const SurfaceIncidence& mesh, int threads, const 
                                       static_cast<std::size_t>(end - begin) * 9 / 8 +
                                   64);
       const std::size_t before = collector.columns.size();
-      collect(row, collector);
-      row_sizes[row] = static_cast<Index>(collector.columns.size() - before);
+      inner_sizes[row] = collect(row, collector);
+      sizes[row] = static_cast<Index>(collector.columns.size() - before);
     }
     parts[static_cast<std::size_t>(block)] = {begin, end, std::move(collector.columns)};
   });
-  SparseMatrix pattern = allocate_rows(n, n, row_sizes, what);
+  return parts;
+}
+
+/// Writes the first counts[row] of the collected columns of every row, transposed.
+void write_transposed(const std::vector<Rows>& parts, const Array<Index>& sizes,
+                      const Array<Index>& counts, int threads, SparseMatrix& pattern) {
+  const Index n = static_cast<Index>(pattern.rows());
   Index* const columns = pattern.innerIndexPtr();
   parallel_blocks(n, threads, [&](int, Index begin, Index end) {
     Array<Index> next(pattern.outerIndexPtr() + begin, pattern.outerIndexPtr() + end);
     const bool all = begin == 0 && end == n;
-    for (const Part& part : parts) {
+    for (const Rows& part : parts) {
       const Index* column = part.columns.data();
-      for (Index row = part.begin; row < part.end; ++row) {
-        const Index* const last = column + row_sizes[row];
+      for (Index row = part.begin; row < part.end; column += sizes[row], ++row) {
+        const Index* const last = column + counts[row];
         if (all) {
-          for (; column < last; ++column) columns[next[*column]++] = row;
+          for (const Index* c = column; c < last; ++c) columns[next[*c]++] = row;
         } else {
-          for (; column < last; ++column)
-            if (*column >= begin && *column < end) columns[next[*column - begin]++] = row;
+          for (const Index* c = column; c < last; ++c)
+            if (*c >= begin && *c < end) columns[next[*c - begin]++] = row;
         }
       }
     }
   });
-  return pattern;
 }
 
 }  // namespace
@@ -133,21 +140,42 @@ FaceRings face_rings(const SurfaceIncidence& mesh, int threads) {
 }
 
 SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads) {
-  return symmetric_pattern(mesh, threads, "the matrix", [&](Index row, Collector& out) {
-    for (const Index corner : mesh.vertex_corners.row(row))
-      for (const Index v : mesh.faces.row(mesh.corner_faces[corner])) out.add(v, row);
-  });
+  Array<Index> sizes, same;
+  const std::vector<Rows> rows =
+      collect_rows(mesh, threads, sizes, same, [&](Index row, Collector& out) {
+        for (const Index corner : mesh.vertex_corners.row(row))
+          for (const Index v : mesh.faces.row(mesh.corner_faces[corner])) out.add(v, row);
+        return Index{0};
+      });
+  const Index n = mesh.vertex_corners.n_rows();
+  SparseMatrix pattern = allocate_rows(n, n, sizes, "the matrix");
+  write_transposed(rows, sizes, sizes, threads, pattern);
+  return pattern;
 }
 
-SparseMatrix diamond_pattern(const SurfaceIncidence& mesh, const FaceRings& rings, int threads) {
-  return symmetric_pattern(mesh, threads, "the diamond stiffness", [&](Index row, Collector& out) {
-    for (const Index corner : mesh.vertex_corners.row(row)) {
-      const Index f = mesh.corner_faces[corner];
-      for (const Index v : mesh.faces.row(f)) out.add(v, row);
-      for (std::int64_t k = rings.begin(f); k < rings.end(f); ++k)
-        out.add(rings.vertices[static_cast<std::size_t>(k)], row);
-    }
-  });
+DiamondPatterns diamond_patterns(const SurfaceIncidence& mesh, const FaceRings& rings,
+                                 int threads) {
+  Array<Index> sizes, mass_sizes;
+  const std::vector<Rows> rows =
+      collect_rows(mesh, threads, sizes, mass_sizes, [&](Index row, Collector& out) {
+        const std::size_t before = out.columns.size();
+        const std::span<const Index> corners = mesh.vertex_corners.row(row);
+        for (const Index corner : corners)
+          for (const Index v : mesh.faces.row(mesh.corner_faces[corner])) out.add(v, row);
+        const std::size_t own = out.columns.size() - before;
+        for (const Index corner : corners) {
+          const Index f = mesh.corner_faces[corner];
+          for (std::int64_t k = rings.begin(f); k < rings.end(f); ++k)
+            out.add(rings.vertices[static_cast<std::size_t>(k)], row);
+        }
+        return static_cast<Index>(own);
+      });
+  const Index n = mesh.vertex_corners.n_rows();
+  DiamondPatterns patterns{allocate_rows(n, n, sizes, "the diamond stiffness"),
+                           allocate_rows(n, n, mass_sizes, "the diamond mass")};
+  write_transposed(rows, sizes, sizes, threads, patterns.stiffness);
+  write_transposed(rows, sizes, mass_sizes, threads, patterns.mass);
+  return patterns;
 }
 
 }  // namespace carat

@@ -42,10 +42,18 @@ FaceRings face_rings(const SurfaceIncidence& mesh, int threads);
 /// \throws InvalidMesh  2^31 entries or more
 SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads);
 
-/// Square matrix of unset values: row i holds the vertices of all faces of i and of all faces
-/// across an edge from them, the reach of the diamond Laplacian.   [BBA21 section 7, Locality]
+/// Patterns of the diamond Laplacian, square matrices of unset values.
+struct DiamondPatterns {
+  /// Row i holds the vertices of all faces of i and of all faces across an edge from them.
+  /// [BBA21 section 7, Locality]
+  SparseMatrix stiffness;
+  /// Row i holds the vertices of all faces of i.
+  SparseMatrix mass;
+};
+
 /// \throws InvalidMesh  2^31 entries or more
-SparseMatrix diamond_pattern(const SurfaceIncidence& mesh, const FaceRings& rings, int threads);
+DiamondPatterns diamond_patterns(const SurfaceIncidence& mesh, const FaceRings& rings,
+                                 int threads);
 
 /// Square diagonal matrix of unset values.
 SparseMatrix diagonal_pattern(Index n);

@@ -75,9 +75,10 @@ DiamondAssembly::DiamondAssembly(const PolygonMesh& mesh, const DiscretizationOp
     : mesh_(mesh), options_(options), incidence_(surface_incidence(mesh_)) {
   result_.name = "diamond";
   rings_ = face_rings(incidence_, options_.threads);
-  result_.stiffness = diamond_pattern(incidence_, rings_, options_.threads);
+  DiamondPatterns patterns = diamond_patterns(incidence_, rings_, options_.threads);
+  result_.stiffness = std::move(patterns.stiffness);
   result_.mass = options_.lumped_mass ? diagonal_pattern(mesh_.n_vertices())
-                                      : face_pattern(incidence_, options_.threads);
+                                      : std::move(patterns.mass);
   find_diamonds();
   result_.sample_measure.resize(n_diamonds());
   if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
