@@ -52,8 +52,7 @@ struct DiamondPatterns {
 };
 
 /// \throws InvalidMesh  2^31 entries or more
-DiamondPatterns diamond_patterns(const SurfaceIncidence& mesh, const FaceRings& rings,
-                                 int threads);
+DiamondPatterns diamond_patterns(const SurfaceIncidence& mesh, const FaceRings& rings, int threads);
 
 /// Square diagonal matrix of unset values.
 SparseMatrix diagonal_pattern(Index n);

@@ -77,8 +77,8 @@ DiamondAssembly::DiamondAssembly(const PolygonMesh& mesh, const DiscretizationOp
   rings_ = face_rings(incidence_, options_.threads);
   DiamondPatterns patterns = diamond_patterns(incidence_, rings_, options_.threads);
   result_.stiffness = std::move(patterns.stiffness);
-  result_.mass = options_.lumped_mass ? diagonal_pattern(mesh_.n_vertices())
-                                      : std::move(patterns.mass);
+  result_.mass =
+      options_.lumped_mass ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
   find_diamonds();
   result_.sample_measure.resize(n_diamonds());
   if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
