@@ -118,7 +118,7 @@ Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
   }
   for (const Index v : ground)
     if (v >= 0) held[v] = true;
-  solver_ = std::make_unique<SpdSolver>(system_, std::move(held));
+  solver_ = std::make_unique<SpdSolver>(system_, held);
 }
 
 PoissonSolution Poisson::solve(const Vector& f) const {

@@ -118,7 +118,7 @@ std::vector<int> read_cell_types(Scanner& scanner) {
 /// Reads the geometry up to the line POINT_DATA or CELL_DATA, whose keyword it returns.
 std::string read_geometry(Scanner& scanner, int version, Geometry& geometry) {
   while (scanner.to_content()) {
-    const std::string keyword = upper_case(scanner.word());
+    std::string keyword = upper_case(scanner.word());
     if (keyword == "POINTS") {
       geometry.points = read_points(scanner);
     } else if (keyword == "VERTICES") {

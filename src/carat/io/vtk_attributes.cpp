@@ -159,7 +159,7 @@ std::string read_vtk_attributes(Scanner& scanner, std::int64_t n, std::vector<Fi
     fields.push_back(read_values(scanner, std::move(array), type));
   };
   while (scanner.to_content()) {
-    const std::string keyword = upper_case(scanner.word());
+    std::string keyword = upper_case(scanner.word());
     if (keyword == "POINT_DATA" || keyword == "CELL_DATA") return keyword;
     if (keyword == "SCALARS") {
       fields.push_back(read_scalars(scanner, n));

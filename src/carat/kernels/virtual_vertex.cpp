@@ -156,7 +156,7 @@ bool VirtualVertexKernel::find_kernel_centroid() {
       const double da = cross(side, a - origin), db = cross(side, b - origin);
       if (da >= 0) clip_scratch_.push_back(a);
       if ((da > 0 && db < 0) || (da < 0 && db > 0))
-        clip_scratch_.push_back(a + (b - a) * (da / (da - db)));
+        clip_scratch_.emplace_back(a + (b - a) * (da / (da - db)));
     }
     clipped_.swap(clip_scratch_);
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <utility>
 
 #include "carat/base/error.h"
 
@@ -205,7 +204,7 @@ struct SpdSolver::Impl {
 
 #endif
 
-SpdSolver::SpdSolver(const SparseMatrix& matrix, std::vector<bool> fixed) {
+SpdSolver::SpdSolver(const SparseMatrix& matrix, const std::vector<bool>& fixed) {
   if (matrix.rows() != matrix.cols())
     throw InvalidOption("a matrix of " + std::to_string(matrix.rows()) + " rows and " +
                         std::to_string(matrix.cols()) + " columns is not symmetric");
@@ -298,7 +297,7 @@ SemidefiniteSolver::SemidefiniteSolver(const SparseMatrix& matrix)
   std::vector<bool> fixed(static_cast<std::size_t>(n), false);
   for (Index row = 0; row < n; ++row) fixed[row] = components_[row] < 0;
   for (const Index row : ground) fixed[row] = true;
-  solver_ = std::make_unique<SpdSolver>(matrix, std::move(fixed));
+  solver_ = std::make_unique<SpdSolver>(matrix, fixed);
 }
 
 Matrix SemidefiniteSolver::solve(Matrix rhs) const {

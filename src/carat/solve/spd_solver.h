@@ -27,7 +27,7 @@ class SpdSolver {
   /// \param matrix  symmetric; entries above and below the diagonal must agree
   /// \param fixed   empty, or one flag a row: rows and columns to leave out
   /// \throws SolverFailure  not positive definite: names the row of the failing pivot
-  explicit SpdSolver(const SparseMatrix& matrix, std::vector<bool> fixed = {});
+  explicit SpdSolver(const SparseMatrix& matrix, const std::vector<bool>& fixed = {});
   ~SpdSolver();
   SpdSolver(SpdSolver&&) noexcept;
   SpdSolver& operator=(SpdSolver&&) noexcept;
