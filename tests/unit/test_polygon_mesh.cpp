@@ -10,7 +10,6 @@
 
 #include "carat/base/error.h"
 #include "carat/mesh/polygon_mesh.h"
-#include "support/cpu_time.h"
 
 namespace carat {
 namespace {
@@ -114,6 +113,7 @@ TEST(PolygonMesh, EdgesOfRandomFaces) {
   }
 }
 
+// Quadratic cost would take minutes here and run into the time limit of the test.
 TEST(PolygonMesh, HighValenceFanCostsNoMoreThanItsSize) {
   constexpr Index kTriangles = 100000;
   Csr faces;
@@ -124,22 +124,15 @@ TEST(PolygonMesh, HighValenceFanCostsNoMoreThanItsSize) {
     faces.indices.insert(faces.indices.end(), {0, a, b});
     faces.offsets.push_back(static_cast<Index>(faces.indices.size()));
   }
-  const test::CpuTimer timer;
   const PolygonMesh mesh(line_of_points(kTriangles + 1), std::move(faces));
   EXPECT_EQ(mesh.n_edges(), 2 * kTriangles);
   EXPECT_EQ(mesh.vertex_corners().size(0), kTriangles);
-  const double seconds = timer.seconds();
-  // Takes some 0.03 s; anything quadratic takes minutes.
-  EXPECT_LT(seconds, 5);
 }
 
 TEST(PolygonMesh, FaceOfTwoAlternatingVerticesIsRefusedFast) {
   std::vector<Index> face(300000);
   for (std::size_t i = 0; i < face.size(); ++i) face[i] = static_cast<Index>(i % 2);
-  const test::CpuTimer timer;
   EXPECT_NE(message_of(2, {face}), "");
-  const double seconds = timer.seconds();
-  EXPECT_LT(seconds, 5);  // milliseconds, unless quadratic
 }
 
 TEST(PolygonMesh, DropsVerticesThatRepeatTheirPredecessor) {

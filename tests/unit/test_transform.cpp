@@ -13,7 +13,6 @@
 #include "carat/generators/families.h"
 #include "carat/mesh/statistics.h"
 #include "carat/mesh/transform.h"
-#include "support/cpu_time.h"
 
 namespace carat {
 namespace {
@@ -180,14 +179,12 @@ TEST(Triangulate, FacesThatVisitAVertexTwice) {
   EXPECT_EQ(triangles.n_dropped_corners(), 0);
 }
 
+// Quadratic cost would take minutes here and run into the time limit of the test.
 TEST(Triangulate, HugePolygonsTakeNoQuadraticTime) {
   constexpr Index kCorners = 100000;
-  const test::CpuTimer timer;
   expect_covered_once(one_polygon(polar(kCorners, [](double) { return 1.0; })));
   expect_covered_once(one_polygon(polar(kCorners, [](double t) { return 2 + std::sin(50 * t); })));
   expect_covered_once(one_polygon(spiral(kCorners)));
-  const double seconds = timer.seconds();
-  EXPECT_LT(seconds, 30);  // some 2 s; a quadratic cost would be minutes
 }
 
 TEST(Triangulate, AreaOfPlanarFamiliesIsKept) {
@@ -348,11 +345,8 @@ TEST(DualMesh, HighValenceVertex) {
   points << polygon.points(), 0, 0, 0;
   Faces faces;
   for (Index i = 0; i < kFaces; ++i) faces.push_back({kFaces, i, (i + 1) % kFaces});
-  const test::CpuTimer timer;
   const PolygonMesh dual = dual_mesh(PolygonMesh::from_faces(points, faces));
-  const double seconds = timer.seconds();
   EXPECT_EQ(dual.faces().size(kFaces), kFaces);
-  EXPECT_LT(seconds, 5);  // some 0.05 s; a quadratic walk takes minutes
 }
 
 }  // namespace
