@@ -35,7 +35,7 @@ void check_sources(const std::vector<Index>& sources, Index n_vertices) {
 Field direction_field(const Discretization& discretization, Vector distance, Index n_faces) {
   for (double& value : distance)
     if (!std::isfinite(value)) value = 0;
-  Points directions = discretization.face_vectors(discretization.gradient * distance, n_faces);
+  Points directions = discretization.element_vectors(discretization.gradient * distance, n_faces);
   for (Index f = 0; f < n_faces; ++f) directions.row(f).normalize();
   return vector_field("direction", directions);
 }

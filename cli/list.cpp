@@ -31,8 +31,8 @@ Json list_operators(Session& session) {
                       {"semidefinite", claims.semidefinite},
                       {"kernel_is_constants", claims.kernel_is_constants},
                       {"linear_precision", claims.linear_precision},
-                      {"equals_cotan_on_triangles", claims.equals_cotan_on_triangles},
-                      {"triangles_only", claims.triangles_only},
+                      {"equals_cotan_on_simplices", claims.equals_cotan_on_simplices},
+                      {"simplices_only", claims.simplices_only},
                       {"face_local", claims.face_local}}}});
   }
   return list;

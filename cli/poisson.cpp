@@ -189,7 +189,7 @@ void run(Session& session, const Options& options) {
   const Vector gradient = discretization.gradient * solution.values;
   data.fields.vertex.push_back(vector_field("gradient", discretization.vertex_vectors(gradient)));
   data.fields.face = {
-      vector_field("gradient", discretization.face_vectors(gradient, data.mesh.n_faces()))};
+      vector_field("gradient", discretization.element_vectors(gradient, data.mesh.n_faces()))};
   write_output(session, options.output, "Poisson", data);
 }
 

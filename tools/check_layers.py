@@ -21,6 +21,7 @@ FORBIDDEN = {
 # Registry file, the macro's name in it, the argument that names a file, where the files are.
 REGISTRIES = [
     ("operators/operators.def", "CARAT_SURFACE_OPERATOR", "operators/surface"),
+    ("operators/operators.def", "CARAT_VOLUME_OPERATOR", "operators/volume"),
     ("generators/families.def", "CARAT_FAMILY", "generators"),
     ("io/formats.def", "CARAT_FORMAT", "io"),
 ]
@@ -98,9 +99,10 @@ def check_registry(root, definition, macro, folder):
     errors = [f"{definition}: {name} is there twice" for name in set(names) if names.count(name) > 1]
     directory = root / "src" / "carat" / folder
     texts = {p.stem: p.read_text(encoding="utf-8") for p in directory.glob("*.cpp")}
-    if macro == "CARAT_SURFACE_OPERATOR":
+    kind = re.fullmatch(r"CARAT_(SURFACE|VOLUME)_OPERATOR", macro)
+    if kind:
         defined = set(texts)
-        expected_text = "{}_surface_operator"
+        expected_text = "{}_" + kind.group(1).lower() + "_operator"
     else:
         pattern = {
             "CARAT_FAMILY": r"^PolygonMesh generate_(\w+)\(const FamilyOptions",

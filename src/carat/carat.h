@@ -8,6 +8,7 @@
 #include "carat/generators/families.h"
 #include "carat/mesh/fields.h"
 #include "carat/mesh/polygon_mesh.h"
+#include "carat/mesh/polyhedral_mesh.h"
 #include "carat/mesh/statistics.h"
 #include "carat/mesh/transform.h"
 #include "carat/operators/registry.h"

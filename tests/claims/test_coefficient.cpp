@@ -19,7 +19,7 @@ DiscretizationOptions with_coefficient(std::function<double(const Vec3&)> k) {
 class Coefficient : public testing::TestWithParam<const SurfaceOperator*> {
  protected:
   PolygonMesh mesh(int level) const {
-    return generate_mesh(GetParam()->claims.triangles_only ? "plane-triangles" : "plane-voronoi",
+    return generate_mesh(GetParam()->claims.simplices_only ? "plane-triangles" : "plane-voronoi",
                          {.level = level, .jitter = 0.2});
   }
 };

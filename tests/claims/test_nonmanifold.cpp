@@ -118,7 +118,7 @@ TEST(Nonmanifold, two_faces_are_the_ordinary_case) {
 TEST(Nonmanifold, loose_vertices_are_reported_and_empty) {
   const PolygonMesh mesh = two_components_with_loose_vertices();
   for (const SurfaceOperator* entry : surface_operators()) {
-    if (entry->claims.triangles_only) continue;
+    if (entry->claims.simplices_only) continue;
     const Discretization d = discretize(mesh, entry->name);
     const Finding* loose = d.diagnostics.find("unreferenced_vertices");
     ASSERT_NE(loose, nullptr);

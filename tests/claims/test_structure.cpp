@@ -120,7 +120,7 @@ TEST_P(PlaneStructure, gradients_of_linear_functions_are_exact) {
     const double tolerance = 10 * kEps / 0.01 * condition(mesh, {point});
     EXPECT_LT(gradient_defect(d, mesh.points(), c), tolerance);
     const Vector g = d.gradient * Vector((mesh.points().rowwise() - mesh.points().row(0)) * c);
-    const Points faces = d.face_vectors(g, mesh.n_faces());
+    const Points faces = d.element_vectors(g, mesh.n_faces());
     EXPECT_LT((faces.rowwise() - c.transpose()).rowwise().norm().maxCoeff(), tolerance);
     const Points vertices = d.vertex_vectors(g);
     EXPECT_LT((vertices.rowwise() - c.transpose()).rowwise().norm().maxCoeff(), tolerance);
@@ -137,7 +137,7 @@ TEST_P(TriangleStructure, equals_cotan_exactly_where_claimed) {
   const PolygonMesh mesh = GetParam().mesh();
   const Discretization d = discretization(mesh), cotan = discretize(mesh, "cotan");
   const double measured = difference(d.stiffness, cotan.stiffness);
-  if (GetParam().entry->claims.equals_cotan_on_triangles) {
+  if (GetParam().entry->claims.equals_cotan_on_simplices) {
     EXPECT_LT(measured, 1e-12);
   } else {
     EXPECT_GT(measured, 1e-2) << "the diamond is not cotan";

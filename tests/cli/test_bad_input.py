@@ -179,7 +179,7 @@ class Meshes(CaratTest):
                     "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\n"
                     "CELL_TYPES 1\n10\n", "volume")
 
-    def test_triangles_only_operator(self):
+    def test_simplices_only_operator(self):
         self.generate("plane-quads", 0, "quads.ply")
         self.fail_with(3, "curvature", "quads.ply", "--operator", "cotan", says="triangle")
 

@@ -80,7 +80,7 @@ TEST_F(HtmlView, KeepsFieldsThatSinglePrecisionWouldLose) {
 }
 
 TEST_F(HtmlView, EmptyMesh) {
-  EXPECT_NO_THROW(write_html_view(folder_ / "page.html", {{"nothing", {}}}));
+  EXPECT_NO_THROW(write_html_view(folder_ / "page.html", {{"nothing", SurfaceData{}}}));
 }
 
 TEST_F(HtmlView, RefusesFieldsThatDoNotFit) {

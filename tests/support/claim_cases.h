@@ -35,7 +35,7 @@ inline std::ostream& operator<<(std::ostream& out, const ClaimCase& c) { return 
 
 /// An operator runs on a family unless the literature defines it on triangles only.
 inline bool defined_on(const SurfaceOperator& entry, const std::string& family) {
-  return !entry.claims.triangles_only || family.find("triangles") != std::string::npos;
+  return !entry.claims.simplices_only || family.find("triangles") != std::string::npos;
 }
 
 inline constexpr int kLevels = 3;

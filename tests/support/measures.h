@@ -109,11 +109,12 @@ inline double gradient_defect(const Discretization& d, const Points& points, con
   const Vector u = (points.rowwise() - points.row(0)) * c;
   const Vector g = d.gradient * u;
   double worst = 0;
-  for (const GradientFrames::Part& part : d.frames.parts) {
-    for (Index k = 0; k < d.gradient_dimension; ++k)
+  for (std::size_t i = 0; i < d.frames.parts.size(); ++i)
+    for (Index k = 0; k < d.gradient_dimension; ++k) {
+      const Vec3 axis = d.frames.axes.empty() ? Vec3(Vec3::Unit(k)) : Vec3(d.frames.axes[i].col(k));
       worst = std::max(
-          worst, std::abs(g[part.sample * d.gradient_dimension + k] - part.axes.col(k).dot(c)));
-  }
+          worst, std::abs(g[d.frames.parts[i].sample * d.gradient_dimension + k] - axis.dot(c)));
+    }
   return worst / c.norm();
 }
 

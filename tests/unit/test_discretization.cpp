@@ -44,7 +44,7 @@ TEST(Discretization, parts_are_computed_on_request) {
   EXPECT_THROW(bare.divergence(), InvalidOption);
   EXPECT_THROW(bare.apply_divergence(Vector::Zero(24)), InvalidOption);
   const Discretization with_gradient = discretize(mesh);
-  EXPECT_THROW(with_gradient.face_vectors(Vector::Zero(24), 6), InvalidOption);
+  EXPECT_THROW(with_gradient.element_vectors(Vector::Zero(24), 6), InvalidOption);
   const Discretization all = discretize(mesh, "diamond", {.parts = DiscretizationParts::Frames});
   EXPECT_EQ(all.frames.parts.size(), 24u);
   EXPECT_THROW(all.vertex_vectors(Vector::Zero(5)), InvalidOption);
@@ -68,13 +68,16 @@ TEST(Discretization, frames_are_orthonormal_and_cover_the_area) {
   const PolygonMesh mesh = tetrahedron();
   const Discretization d = discretize(mesh, "diamond", {.parts = DiscretizationParts::Frames});
   Vector area = Vector::Zero(d.n_samples());
-  for (const GradientFrames::Part& part : d.frames.parts) {
-    area[part.sample] += part.area;
-    EXPECT_NEAR(part.axes.col(0).norm(), 1, 1e-14);
-    EXPECT_NEAR(part.axes.col(1).norm(), 1, 1e-14);
-    EXPECT_NEAR(part.axes.col(0).dot(part.axes.col(1)), 0, 1e-14);
+  ASSERT_EQ(d.frames.axes.size(), d.frames.parts.size());
+  for (std::size_t k = 0; k < d.frames.parts.size(); ++k) {
+    const GradientFrames::Part& part = d.frames.parts[k];
+    const auto& axes = d.frames.axes[k];
+    area[part.sample] += part.measure;
+    EXPECT_NEAR(axes.col(0).norm(), 1, 1e-14);
+    EXPECT_NEAR(axes.col(1).norm(), 1, 1e-14);
+    EXPECT_NEAR(axes.col(0).dot(axes.col(1)), 0, 1e-14);
     const auto [v1, v2] = mesh.edges().vertices[part.sample];
-    EXPECT_GT(part.axes.col(0).dot(mesh.point(v2) - mesh.point(v1)), 0)
+    EXPECT_GT(axes.col(0).dot(mesh.point(v2) - mesh.point(v1)), 0)
         << "from the lower-numbered vertex";
   }
   EXPECT_LT((area - d.sample_measure).cwiseAbs().maxCoeff(), 1e-15);

@@ -86,7 +86,7 @@ void write_pages(const std::filesystem::path& folder) {
   const Index middle = (n + 1) * (n + 1) / 2;
   const std::string title = "Test </script> <b>\"page\"</b> & 'more'";
   carat::write_html_view(folder / "page.html",
-                         {{"grid </script><i>", grid}, {"drum", {drum(12), {}}}}, title);
+                         {{"grid </script><i>", grid}, {"drum", SurfaceData{drum(12), {}}}}, title);
   const Vec3 at = grid.mesh.point(middle);
   std::ofstream(folder / "expected.json") << nlohmann::json{
       {"title", title},

@@ -48,6 +48,11 @@ const std::vector<FamilyEntry>& mesh_families() {
   return families;
 }
 
+const std::vector<VolumeFamilyEntry>& volume_families() {
+  static const std::vector<VolumeFamilyEntry> families;
+  return families;
+}
+
 PolygonMesh generate_mesh(const std::string& family, const FamilyOptions& options) {
   const auto& families = mesh_families();
   const auto entry = std::find_if(families.begin(), families.end(),

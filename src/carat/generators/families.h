@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carat/mesh/polygon_mesh.h"
+#include "carat/mesh/polyhedral_mesh.h"
 
 namespace carat {
 
@@ -21,19 +22,24 @@ struct FamilyOptions {
 };
 
 /// A mesh family: `name` as on the command line.
-struct FamilyEntry {
+template <class Mesh>
+struct FamilyEntryOf {
   const char* name;
   const char* title;   ///< one line
-  const char* domain;  ///< "unit square", "unit sphere", "torus"
-  PolygonMesh (*generate)(const FamilyOptions&);
+  const char* domain;  ///< "unit square", "unit sphere", "torus"; "unit cube", "unit ball"
+  Mesh (*generate)(const FamilyOptions&);
 };
+using FamilyEntry = FamilyEntryOf<PolygonMesh>;
+using VolumeFamilyEntry = FamilyEntryOf<PolyhedralMesh>;
 
 /// All families, in the order of families.def.
 const std::vector<FamilyEntry>& mesh_families();
+const std::vector<VolumeFamilyEntry>& volume_families();
 
 /// \throws InvalidOption  unknown family (the message lists the known ones), level < 0 or too
 ///                        deep for 32-bit indices, jitter outside [0, 0.5], anisotropy
 ///                        outside [1, 1000]
 PolygonMesh generate_mesh(const std::string& family, const FamilyOptions& options = {});
+PolyhedralMesh generate_volume(const std::string& family, const FamilyOptions& options = {});
 
 }  // namespace carat

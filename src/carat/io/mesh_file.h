@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "carat/mesh/fields.h"
 #include "carat/mesh/polygon_mesh.h"
+#include "carat/mesh/polyhedral_mesh.h"
 
 namespace carat {
 
@@ -16,13 +18,32 @@ struct SurfaceData {
   MeshFields fields;
 };
 
+/// A named set of boundary faces, as simulation codes have them.
+struct BoundaryPatch {
+  std::string name;
+  std::string type;          ///< e.g. "wall"; may be empty
+  std::vector<Index> faces;  ///< ascending
+};
+
+/// A volume mesh with what came with it.
+struct VolumeData {
+  PolyhedralMesh mesh;
+  MeshFields fields;
+  std::vector<BoundaryPatch> patches{};
+};
+
+/// What a file can hold.
+using MeshData = std::variant<SurfaceData, VolumeData>;
+
 /// One supported format, e.g. {"ply", "Stanford PLY", {".ply"}, true, true, true}.
 struct FileFormat {
   std::string name;
   std::string title;
   std::vector<std::string> extensions;  ///< lower case, with the dot
   bool reads = false, writes = false;
-  bool fields = false;  ///< carries named vertex and face fields
+  bool fields = false;  ///< carries named vertex and face fields, of volumes vertex and cell ones
+  bool reads_volumes = false, writes_volumes = false;
+  bool surfaces = true;  ///< can hold surface meshes at all: what reads and writes speak of
 };
 
 /// All formats, in the order of the table in the documentation.
@@ -36,6 +57,20 @@ const std::vector<FileFormat>& file_formats();
 ///                      mesh; the message names the path and the line or element
 /// \throws InvalidMesh  what the file holds is no mesh (see PolygonMesh); message with the path
 SurfaceData read_surface(const std::filesystem::path& path);
+
+/// Reads a volume mesh: OVM, VTU, legacy VTK, an OpenFOAM polyMesh folder (or a case that has one,
+/// or a file in it), Medit, Gmsh. Vertices and cells keep the file's order and number; of files
+/// with cells of lower dimension the 3-D ones are kept.
+/// \throws  as read_surface; a file with no 3-D cell
+VolumeData read_volume(const std::filesystem::path& path);
+
+/// Reads what the file holds: a volume if it has 3-D cells, else a surface.
+MeshData read_mesh(const std::filesystem::path& path);
+
+/// Writes a volume mesh with the fields and patches that the format has. Otherwise as
+/// write_surface.
+void write_volume(const std::filesystem::path& path, const PolyhedralMesh& mesh,
+                  const MeshFields& fields = {}, const std::vector<BoundaryPatch>& patches = {});
 
 /// Writes a surface mesh, with the fields where the format has them (OBJ, OFF: the mesh alone).
 /// Every double comes back bit by bit. Characters that a field's name cannot have in the format

@@ -20,7 +20,8 @@ struct Field {
 /// The fields that belong to one mesh.
 struct MeshFields {
   std::vector<Field> vertex;  ///< one row a vertex
-  std::vector<Field> face;    ///< one row a face
+  std::vector<Field> face;    ///< one row a face; surfaces only
+  std::vector<Field> cell{};  ///< one row a cell; volumes only
 };
 
 }  // namespace carat

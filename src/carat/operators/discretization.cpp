@@ -17,7 +17,7 @@ void require_gradient(const Discretization& d, Eigen::Index n_values) {
                         " a sample)");
 }
 
-/// Sums area * axes * g of every part into rows chosen by `visit(part, add)`, then divides.
+/// Sums measure * axes * g of every part into rows chosen by `visit(part, add)`, then divides.
 template <class Visit>
 Points average_parts(const Discretization& d, const Vector& vectors, Index n_rows,
                      const Visit& visit) {
@@ -25,18 +25,19 @@ Points average_parts(const Discretization& d, const Vector& vectors, Index n_row
   if (d.frames.parts.empty() && d.n_samples() > 0)
     throw InvalidOption("the frames were not computed; ask for DiscretizationParts::Frames");
   Points sum = Points::Zero(n_rows, 3);
-  Vector area = Vector::Zero(n_rows);
-  for (const GradientFrames::Part& part : d.frames.parts) {
-    const Vec3 vector =
-        part.axes *
-        vectors.segment(Eigen::Index{part.sample} * d.gradient_dimension, d.gradient_dimension);
+  Vector measure = Vector::Zero(n_rows);
+  for (std::size_t k = 0; k < d.frames.parts.size(); ++k) {
+    const GradientFrames::Part& part = d.frames.parts[k];
+    const Eigen::Index first = Eigen::Index{part.sample} * d.gradient_dimension;
+    const Vec3 vector = d.frames.axes.empty() ? Vec3(vectors.segment<3>(first))
+                                              : d.frames.axes[k] * vectors.segment<2>(first);
     visit(part, [&](Index row) {
-      sum.row(row) += part.area * vector.transpose();
-      area[row] += part.area;
+      sum.row(row) += part.measure * vector.transpose();
+      measure[row] += part.measure;
     });
   }
   for (Index row = 0; row < n_rows; ++row)
-    if (area[row] > 0) sum.row(row) /= area[row];
+    if (measure[row] > 0) sum.row(row) /= measure[row];
   return sum;
 }
 
@@ -61,9 +62,9 @@ Vector Discretization::apply_divergence(const Vector& vectors) const {
   return gradient.transpose() * weighted;
 }
 
-Points Discretization::face_vectors(const Vector& vectors, Index n_faces) const {
-  return average_parts(*this, vectors, n_faces,
-                       [](const GradientFrames::Part& part, auto&& add) { add(part.face); });
+Points Discretization::element_vectors(const Vector& vectors, Index n_elements) const {
+  return average_parts(*this, vectors, n_elements,
+                       [](const GradientFrames::Part& part, auto&& add) { add(part.element); });
 }
 
 Points Discretization::vertex_vectors(const Vector& vectors) const {

@@ -157,7 +157,8 @@ std::vector<std::uint8_t> edge_bits(const PolygonMesh& mesh) {
 }
 
 json write_item(const ViewItem& item, detail::BlockWriter& blocks) {
-  const PolygonMesh& mesh = item.data.mesh;
+  const SurfaceData& data = std::get<SurfaceData>(item.data);
+  const PolygonMesh& mesh = data.mesh;
   json entry = write_positions(mesh.points(), blocks);
   entry["title"] = item.title;
   entry["vertices"] = mesh.n_vertices();
@@ -176,8 +177,8 @@ json write_item(const ViewItem& item, detail::BlockWriter& blocks) {
   }
   entry["edgeBits"] = blocks.write_bytes(edge_bits(mesh));
   entry["fields"] = json::array();
-  write_fields(item.data.fields.vertex, "vertex", blocks, entry["fields"]);
-  write_fields(item.data.fields.face, "face", blocks, entry["fields"]);
+  write_fields(data.fields.vertex, "vertex", blocks, entry["fields"]);
+  write_fields(data.fields.face, "face", blocks, entry["fields"]);
   return entry;
 }
 
@@ -203,8 +204,9 @@ void write_html_view(const std::filesystem::path& path, const std::vector<ViewIt
   if (items.empty())
     throw InvalidOption(path.string() + ": no mesh to show; pass at least one item");
   for (const ViewItem& item : items) {
-    check_fields(item.data.fields.vertex, item.data.mesh.n_vertices(), "vertices", item.title);
-    check_fields(item.data.fields.face, item.data.mesh.n_faces(), "faces", item.title);
+    const SurfaceData& data = std::get<SurfaceData>(item.data);
+    check_fields(data.fields.vertex, data.mesh.n_vertices(), "vertices", item.title);
+    check_fields(data.fields.face, data.mesh.n_faces(), "faces", item.title);
   }
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);

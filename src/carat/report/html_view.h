@@ -9,10 +9,10 @@
 
 namespace carat {
 
-/// One mesh of a page.
+/// One mesh of a page, a surface or a volume.
 struct ViewItem {
   std::string title;
-  SurfaceData data;
+  MeshData data;
 };
 
 /// Writes one HTML file that needs no network and no server.

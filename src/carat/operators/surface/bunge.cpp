@@ -205,10 +205,9 @@ void BungeAssembly::collect_frames() {
     for (Index c = mesh_.faces().begin(f); c < mesh_.faces().end(f); ++c)
       if (result_.sample_measure[c] > 0)
         result_.frames.parts.push_back(
-            {c,
+            {result_.sample_measure[c],
+             c,
              f,
-             result_.sample_measure[c],
-             Eigen::Matrix3d::Identity(),
              {mesh_.faces().indices[c], mesh_.faces().indices[mesh_.next_corner(f, c)], -1}});
 }
 
@@ -240,8 +239,8 @@ const SurfaceOperator bunge_surface_operator = {
      .semidefinite = true,
      .kernel_is_constants = true,
      .linear_precision = true,
-     .equals_cotan_on_triangles = true,
-     .triangles_only = false,
+     .equals_cotan_on_simplices = true,
+     .simplices_only = false,
      .face_local = true},
     [](const PolygonMesh& mesh, const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
       return std::make_unique<BungeAssembly>(mesh, options);

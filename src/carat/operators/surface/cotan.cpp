@@ -118,10 +118,9 @@ class CotanAssembly final : public Assembly {
     result_.frames.parts.clear();
     for (Index f = 0; f < mesh_.n_faces(); ++f)
       if (result_.sample_measure[f] > 0)
-        result_.frames.parts.push_back({f,
+        result_.frames.parts.push_back({result_.sample_measure[f],
                                         f,
-                                        result_.sample_measure[f],
-                                        Eigen::Matrix3d::Identity(),
+                                        f,
                                         {mesh_.face(f)[0], mesh_.face(f)[1], mesh_.face(f)[2]}});
   }
 
@@ -156,8 +155,8 @@ const SurfaceOperator cotan_surface_operator = {
      .semidefinite = true,
      .kernel_is_constants = true,
      .linear_precision = true,
-     .equals_cotan_on_triangles = true,
-     .triangles_only = true,
+     .equals_cotan_on_simplices = true,
+     .simplices_only = true,
      .face_local = true},
     [](const PolygonMesh& mesh, const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
       return std::make_unique<CotanAssembly>(mesh, options);

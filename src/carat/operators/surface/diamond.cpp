@@ -267,8 +267,9 @@ void DiamondAssembly::assemble_gradient(const Points& points) {
 }
 
 void DiamondAssembly::collect_frames(const Points& points) {
-  result_.frames.parts.clear();
+  result_.frames = {};
   result_.frames.parts.reserve(2 * terms_.size());
+  result_.frames.axes.reserve(2 * terms_.size());
   for (Index d = 0; d < n_diamonds(); ++d) {
     const DiamondTerm& term = terms_[d];
     if (!(result_.sample_measure[d] > 0)) continue;
@@ -284,11 +285,9 @@ void DiamondAssembly::collect_frames(const Points& points) {
       const double height = v.norm();
       if (!(height > 0)) continue;
       v *= (left ? 1 : -1) / height;
-      GradientFrames::Part piece{d, f, part * virtuals_.triangles[corner].double_area / 2, {}, {}};
-      piece.axes.resize(3, 2);
-      piece.axes << u, v;
-      piece.vertices = {term.v1, term.v2, -1};
-      result_.frames.parts.push_back(piece);
+      result_.frames.parts.push_back(
+          {part * virtuals_.triangles[corner].double_area / 2, d, f, {term.v1, term.v2, -1}});
+      result_.frames.axes.emplace_back() << u, v;
     }
   }
 }
@@ -333,8 +332,8 @@ const SurfaceOperator diamond_surface_operator = {
      .semidefinite = true,
      .kernel_is_constants = true,
      .linear_precision = true,
-     .equals_cotan_on_triangles = false,
-     .triangles_only = false,
+     .equals_cotan_on_simplices = false,
+     .simplices_only = false,
      .face_local = false},
     [](const PolygonMesh& mesh, const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
       return std::make_unique<DiamondAssembly>(mesh, options);
