@@ -4,69 +4,19 @@
 #include <limits>
 #include <string>
 
+#include "carat/assembly/row_pattern.h"
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
 
 namespace carat {
-namespace {
-
-/// Scratch of one thread while it collects rows: every column once.
-struct Collector {
-  explicit Collector(Index n_vertices) : row_of_vertex(static_cast<std::size_t>(n_vertices), -1) {}
-
-  void add(Index v, Index row) {
-    if (row_of_vertex[v] == row) return;
-    row_of_vertex[v] = row;
-    columns.push_back(v);
-  }
-
-  Array<Index> row_of_vertex;  // the last row that a vertex was added to
-  Array<Index> columns;
-};
-
-/// Rows [begin, end) of a pattern, columns in the order they were met.
-struct Rows {
-  Index begin = 0, end = 0;
-  Array<Index> columns;
-};
-
-/// Collects the rows of a symmetric pattern in any order; `collect` returns how many of a row's
-/// first columns make up the row of a second pattern inside it. write_transposed then writes the
-/// transposes, which are the same patterns with every row ascending: nothing is ever sorted.
-template <class Collect>
-std::vector<Rows> collect_rows(const SurfaceIncidence& mesh, int threads, Array<Index>& sizes,
-                               Array<Index>& inner_sizes, const Collect& collect) {
-  const Index n = mesh.vertex_corners.n_rows();
-  sizes.resize(static_cast<std::size_t>(n));
-  inner_sizes.resize(static_cast<std::size_t>(n));
-  std::vector<Rows> parts(static_cast<std::size_t>(resolve_threads(threads)));
-  parallel_blocks(n, threads, [&](int block, Index begin, Index end) {
-    Collector collector(n);
-    // Guess the size from the first rows, so that the array rarely grows.
-    constexpr Index kSample = 1000;
-    for (Index row = begin; row < end; ++row) {
-      if (row == begin + kSample)
-        collector.columns.reserve(collector.columns.size() / kSample *
-                                      static_cast<std::size_t>(end - begin) * 9 / 8 +
-                                  64);
-      const std::size_t before = collector.columns.size();
-      inner_sizes[row] = collect(row, collector);
-      sizes[row] = static_cast<Index>(collector.columns.size() - before);
-    }
-    parts[static_cast<std::size_t>(block)] = {begin, end, std::move(collector.columns)};
-  });
-  return parts;
-}
-
-/// Writes the first counts[row] of the collected columns of every row, transposed.
-void write_transposed(const std::vector<Rows>& parts, const Array<Index>& sizes,
+void write_transposed(const std::vector<CollectedRows>& parts, const Array<Index>& sizes,
                       const Array<Index>& counts, int threads, SparseMatrix& pattern) {
   const Index n = static_cast<Index>(pattern.rows());
   Index* const columns = pattern.innerIndexPtr();
   parallel_blocks(n, threads, [&](int, Index begin, Index end) {
     Array<Index> next(pattern.outerIndexPtr() + begin, pattern.outerIndexPtr() + end);
     const bool all = begin == 0 && end == n;
-    for (const Rows& part : parts) {
+    for (const CollectedRows& part : parts) {
       const Index* column = part.columns.data();
       for (Index row = part.begin; row < part.end; column += sizes[row], ++row) {
         const Index* const last = column + counts[row];
@@ -80,8 +30,6 @@ void write_transposed(const std::vector<Rows>& parts, const Array<Index>& sizes,
     }
   });
 }
-
-}  // namespace
 
 SparseMatrix allocate_rows(Index n_rows, Index n_cols, const Array<Index>& row_sizes,
                            const char* what) {
@@ -141,8 +89,8 @@ FaceRings face_rings(const SurfaceIncidence& mesh, int threads) {
 
 SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads) {
   Array<Index> sizes, same;
-  const std::vector<Rows> rows =
-      collect_rows(mesh, threads, sizes, same, [&](Index row, Collector& out) {
+  const std::vector<CollectedRows> rows = collect_rows(
+      mesh.vertex_corners.n_rows(), threads, sizes, same, [&](Index row, RowCollector& out) {
         for (const Index corner : mesh.vertex_corners.row(row))
           for (const Index v : mesh.faces.row(mesh.corner_faces[corner])) out.add(v, row);
         return Index{0};
@@ -156,8 +104,8 @@ SparseMatrix face_pattern(const SurfaceIncidence& mesh, int threads) {
 DiamondPatterns diamond_patterns(const SurfaceIncidence& mesh, const FaceRings& rings,
                                  int threads) {
   Array<Index> sizes, mass_sizes;
-  const std::vector<Rows> rows =
-      collect_rows(mesh, threads, sizes, mass_sizes, [&](Index row, Collector& out) {
+  const std::vector<CollectedRows> rows = collect_rows(
+      mesh.vertex_corners.n_rows(), threads, sizes, mass_sizes, [&](Index row, RowCollector& out) {
         const std::size_t before = out.columns.size();
         const std::span<const Index> corners = mesh.vertex_corners.row(row);
         for (const Index corner : corners)

@@ -20,14 +20,6 @@ struct MeshRepairs {
   std::vector<Index> merged_faces;
 };
 
-/// Two cells of a face. The face's normal, by the right-hand rule from the order of its vertices,
-/// points out of `below` and into `above`; -1: none. Boundary faces have one cell.
-struct FaceCells {
-  Index below, above;
-  Index other(Index cell) const { return cell == below ? above : below; }
-  bool boundary() const { return (below < 0) != (above < 0); }
-};
-
 /// An immutable mesh of polyhedra in 3-D.
 ///
 /// Ordinary input: cells of any number of faces, convex or not; faces of any valence, planar or
