@@ -1,5 +1,6 @@
 #include "carat/operators/common.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
 
@@ -22,6 +23,40 @@ double coefficient_at(const DiscretizationOptions& options, const Vec3& centroid
   return k;
 }
 
+void check_cell_coefficient(const DiscretizationOptions& options, Index n_cells) {
+  const Matrix& k = options.cell_coefficient;
+  if (k.size() == 0) return;
+  if (k.rows() != n_cells || (k.cols() != 1 && k.cols() != 6))
+    throw InvalidOption("cell_coefficient is a " + std::to_string(k.rows()) + " x " +
+                        std::to_string(k.cols()) + " array for " + std::to_string(n_cells) +
+                        " cells; it must have one row a cell, of 1 value or of 6 (xx yy zz xy yz "
+                        "xz)");
+  for (Index c = 0; c < n_cells; ++c) {
+    const Eigen::Matrix3d tensor = cell_tensor(options, c);
+    // Positive definite: all leading minors are.
+    const bool sound = tensor.allFinite() && tensor(0, 0) > 0 &&
+                       tensor.topLeftCorner<2, 2>().determinant() > 0 && tensor.determinant() > 0;
+    if (sound) continue;
+    std::string values;
+    for (Index i = 0; i < k.cols(); ++i) values += (i > 0 ? " " : "") + number(k(c, i));
+    throw InvalidOption(
+        "the coefficient of cell " + std::to_string(c) + " is " + values + "; it must be " +
+            (k.cols() == 1 ? "a positive finite number" : "a symmetric positive definite tensor") +
+            " in every cell",
+        {c});
+  }
+}
+
+Eigen::Matrix3d cell_tensor(const DiscretizationOptions& options, Index cell) {
+  const Matrix& k = options.cell_coefficient;
+  if (k.size() == 0) return Eigen::Matrix3d::Identity();
+  if (k.cols() == 1) return k(cell, 0) * Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d tensor;
+  tensor << k(cell, 0), k(cell, 3), k(cell, 5), k(cell, 3), k(cell, 1), k(cell, 4), k(cell, 5),
+      k(cell, 4), k(cell, 2);
+  return tensor;
+}
+
 void report_degenerate(std::vector<Index> samples, const DiscretizationOptions& options,
                        const std::string& kind, const std::function<std::string(Index)>& describe,
                        Diagnostics& diagnostics) {
@@ -29,7 +64,8 @@ void report_degenerate(std::vector<Index> samples, const DiscretizationOptions& 
     const std::string message =
         kind + " " + std::to_string(samples[0]) + " (" + describe(samples[0]) +
         ") is degenerate: its measure is below " + number(options.eps_rel) +
-        " of its squared diameter, as for " + std::to_string(samples.size() - 1) +
+        " of its diameter to the power of its dimension, as for " +
+        std::to_string(samples.size() - 1) +
         " more; repair the mesh, or use DegeneratePolicy::Report to leave them out";
     throw DegenerateElement(message, std::move(samples));
   }
@@ -45,6 +81,22 @@ void report_unreferenced(const PolygonMesh& mesh, Diagnostics& diagnostics) {
   diagnostics.add("unreferenced_vertices",
                   "vertices without a face: empty rows, excluded from every solve",
                   std::move(unreferenced));
+}
+
+void report_unreferenced(const PolyhedralMesh& mesh, Diagnostics& diagnostics) {
+  std::vector<Index> unreferenced;
+  for (Index v = 0; v < mesh.n_vertices(); ++v)
+    if (mesh.vertex_cell_corners().size(v) == 0) unreferenced.push_back(v);
+  diagnostics.add("unreferenced_vertices",
+                  "vertices without a cell: empty rows, excluded from every solve",
+                  std::move(unreferenced));
+}
+
+void centre_points(const Points& points, Points& centred, Vec3& origin) {
+  origin.setZero();
+  if (points.rows() > 0)
+    origin = ((points.colwise().minCoeff() + points.colwise().maxCoeff()) / 2).transpose();
+  centred = points.rowwise() - origin.transpose();
 }
 
 }  // namespace carat

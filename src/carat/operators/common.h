@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "carat/mesh/polyhedral_mesh.h"
 #include "carat/operators/discretization.h"
 
 namespace carat {
@@ -11,6 +12,13 @@ namespace carat {
 /// K at the centroid of a sample.
 /// \throws InvalidOption  K is not a positive finite number there
 double coefficient_at(const DiscretizationOptions& options, const Vec3& centroid);
+
+/// \throws InvalidOption  cell_coefficient has another shape than it should, or a value that is not
+///                        finite, or a cell's tensor is not positive definite
+void check_cell_coefficient(const DiscretizationOptions& options, Index n_cells);
+
+/// K of a cell from the checked cell_coefficient; the identity where there is none.
+Eigen::Matrix3d cell_tensor(const DiscretizationOptions& options, Index cell);
 
 /// Lists degenerate samples, or throws under DegeneratePolicy::Strict.
 /// \param kind      "diamond", "virtual triangle", "face"
@@ -20,8 +28,12 @@ void report_degenerate(std::vector<Index> samples, const DiscretizationOptions& 
                        const std::string& kind, const std::function<std::string(Index)>& describe,
                        Diagnostics& diagnostics);
 
-/// Lists the vertices without a face: their rows and columns are empty.
+/// Lists the vertices without a face, or in volumes a cell: their rows and columns are empty.
 void report_unreferenced(const PolygonMesh& mesh, Diagnostics& diagnostics);
+void report_unreferenced(const PolyhedralMesh& mesh, Diagnostics& diagnostics);
+
+/// Positions relative to the middle of their bounding box.
+void centre_points(const Points& points, Points& centred, Vec3& origin);
 
 /// Text of a number in an error message: shortest form that names the value.
 std::string number(double value);

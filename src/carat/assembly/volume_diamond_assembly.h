@@ -1,0 +1,54 @@
+#pragma once
+// Stiffness and mass of the diamond Laplacian in volumes from a few numbers a face.
+//
+// All minimal diamonds of a face f between cells l (below) and r (above) share w = u_r - u_l. Their
+// energies add up to E_f = u^T A u + 2 w a^T u + gamma w^2, where A and a live on the face's
+// vertices and its virtual vertex, whose weights are w_f. With p_c the weights of cell c as a row
+// vector over the vertices, the row of vertex i is
+//   sum over its cells of p_c,i (b_c + Gamma_c p_c - sum over faces of gamma p_across) + b_c,i p_c
+//   + the rows of A,    b_c = sum over faces of sigma a,  Gamma_c = sum of gamma,
+// sigma = + where the cell is above. The bracket is computed once a cell. At the boundary the
+// virtual vertex of the face stands for the missing cell, and is folded into A and a.
+
+#include <vector>
+
+#include "carat/assembly/volume_pattern.h"
+#include "carat/base/types.h"
+
+namespace carat {
+
+/// What the diamonds of a face add, and intermediate values, kept between calls for their memory.
+struct VolumeDiamondWorkspace {
+  /// One a corner of a face. A has the diagonal entries `diagonal`, -`side` between the corner's
+  /// vertex and the next, and -`spoke` between the vertex and the virtual one.
+  struct Corner {
+    double side, spoke, diagonal;
+    double alpha;  ///< a at the vertex
+    double mass;   ///< of the vertex itself  [length^3]
+  };
+  /// A and a at the virtual vertex, and what belongs to the face as a whole.
+  struct Face {
+    double spokes, alpha, gamma;
+    double mass;      ///< of the virtual vertex  [length^3]
+    double tip_mass;  ///< of each cell's virtual vertex  [length^3]
+  };
+  Array<Corner> corners;
+  Array<Face> faces;
+  Array<double> cell_mass;
+  Array<double> own;       ///< cell corner -> b_c
+  Array<double> coupling;  ///< the bracket, over the vertices and the ring of every cell
+  struct Thread {
+    Array<Index> stiffness_position, mass_position;
+  };
+  std::vector<Thread> threads;
+};
+
+/// Fills `stiffness` and `mass`, whose patterns are those of diamond_patterns(mesh, rings) (the
+/// mass may be diagonal: then with the row sums), from workspace.corners and workspace.faces.
+/// \param face_weights  corner -> affine weight; \param cell_weights  cell corner -> affine weight
+void assemble_volume_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_mass,
+                              const VolumeIncidence& mesh, const CellRings& rings,
+                              const Array<double>& face_weights, const Array<double>& cell_weights,
+                              int threads, VolumeDiamondWorkspace& workspace);
+
+}  // namespace carat

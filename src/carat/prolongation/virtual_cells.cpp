@@ -1,0 +1,152 @@
+#include "carat/prolongation/virtual_cells.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "carat/base/parallel.h"
+#include "carat/kernels/virtual_cell.h"
+
+namespace carat {
+namespace {
+
+bool is_tetrahedron(const PolyhedralMesh& mesh, Index c) {
+  return mesh.cells().size(c) == 4 && mesh.cell_vertices().size(c) == 4;
+}
+
+/// Fills in a cell relative to its first vertex.
+void load(const PolyhedralMesh& mesh, const Points& points, const Points& face_points,
+          const Array<FaceMoment>& moments, Index c, CellGeometry& cell) {
+  const std::span<const Index> vertices = mesh.cell_vertices().row(c);
+  const Vec3 anchor = points.row(vertices[0]).transpose();
+  cell.vertices.clear();
+  cell.face_points.clear();
+  cell.moments.clear();
+  cell.virtual_planes.clear();
+  for (const Index v : vertices) cell.vertices.push_back(Vec3(points.row(v).transpose()) - anchor);
+  for (const Index f : mesh.cell(c)) {
+    const Vec3 xf = Vec3(face_points.row(f).transpose()) - anchor;
+    cell.face_points.push_back(xf);
+    cell.moments.push_back(moments[f]);
+    const double sign = mesh.face_cells()[f].below == c ? 0.5 : -0.5;
+    const std::span<const Index> face = mesh.face(f);
+    Vec3 previous = Vec3(points.row(face.back()).transpose()) - anchor - xf;
+    for (const Index v : face) {
+      const Vec3 next = Vec3(points.row(v).transpose()) - anchor - xf;
+      const Vec3 area = sign * previous.cross(next);
+      cell.virtual_planes.push_back({area, area.dot(xf)});
+      previous = next;
+    }
+  }
+}
+
+/// Where the corners of the tetrahedron's faces lie does not matter: 1/4 each.
+VirtualVertexStatus tetrahedron(const Points& points, std::span<const Index> vertices,
+                                double* weights) {
+  std::fill(weights, weights + 4, 0.25);
+  const Vec3 x0 = points.row(vertices[0]).transpose();
+  const Vec3 e1 = Vec3(points.row(vertices[1]).transpose()) - x0;
+  const Vec3 e2 = Vec3(points.row(vertices[2]).transpose()) - x0;
+  const Vec3 e3 = Vec3(points.row(vertices[3]).transpose()) - x0;
+  const double size2 = std::max({e1.squaredNorm(), e2.squaredNorm(), e3.squaredNorm()});
+  const double volume = std::abs(e1.dot(e2.cross(e3)));
+  constexpr double kNoise = 1e-13;
+  return volume > kNoise * size2 * std::sqrt(size2) ? VirtualVertexStatus::Regular
+                                                    : VirtualVertexStatus::Degenerate;
+}
+
+}  // namespace
+
+void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
+                          const VirtualVertexRule& rule, int threads, VirtualCells& result) {
+  update_virtual_vertices(mesh.face_mesh(), points, rule, threads, result.faces);
+  result.face_points = face_points(mesh.face_mesh(), points, result.faces.weights);
+  const Csr& cell_vertices = mesh.cell_vertices();
+  result.cell_weights.resize(cell_vertices.indices.size());
+  result.cell_points.resize(mesh.n_cells(), 3);
+  result.cell_status.resize(static_cast<std::size_t>(mesh.n_cells()));
+  Array<FaceMoment> moments(static_cast<std::size_t>(mesh.n_faces()));
+  parallel_blocks(mesh.n_faces(), threads, [&](int, Index begin, Index end) {
+    for (Index f = begin; f < end; ++f)
+      moments[f] = face_moment(points, mesh.face(f), result.face_points.row(f).transpose());
+  });
+  parallel_blocks(mesh.n_cells(), threads, [&](int, Index begin, Index end) {
+    VirtualCellKernel kernel(rule);
+    CellGeometry cell;
+    std::vector<double> weights;
+    Array<Index> place(static_cast<std::size_t>(mesh.n_vertices()));
+    for (Index c = begin; c < end; ++c) {
+      const std::span<const Index> vertices = cell_vertices.row(c);
+      double* const composed = result.cell_weights.data() + cell_vertices.begin(c);
+      if (is_tetrahedron(mesh, c)) {
+        result.cell_status[c] = tetrahedron(points, vertices, composed);
+      } else {
+        load(mesh, points, result.face_points, moments, c, cell);
+        const std::size_t n = vertices.size();
+        weights.resize(n + cell.face_points.size());
+        result.cell_status[c] = kernel.compute(cell, weights.data());
+        // P = P_C P_F     [BBA21 (30)]
+        for (std::size_t k = 0; k < n; ++k) {
+          place[vertices[k]] = static_cast<Index>(k);
+          composed[k] = weights[k];
+        }
+        const double* weight = weights.data() + n;
+        for (const Index f : mesh.cell(c)) {
+          const Index first = mesh.face_mesh().faces().begin(f);
+          const std::span<const Index> face = mesh.face(f);
+          for (std::size_t k = 0; k < face.size(); ++k)
+            composed[place[face[k]]] +=
+                *weight * result.faces.weights[first + static_cast<Index>(k)];
+          ++weight;
+        }
+      }
+      // About one vertex, so that no accuracy is lost far from the origin.
+      const Eigen::RowVector3d anchor = points.row(vertices[0]);
+      Eigen::RowVector3d offset = Eigen::RowVector3d::Zero();
+      for (std::size_t k = 0; k < vertices.size(); ++k)
+        offset += composed[k] * (points.row(vertices[k]) - anchor);
+      result.cell_points.row(c) = anchor + offset;
+    }
+  });
+}
+
+SparseMatrix prolongation_matrix(const PolyhedralMesh& mesh, const VirtualCells& virtuals) {
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  const Index n = mesh.n_vertices(), nf = mesh.n_faces();
+  const Csr& faces = mesh.face_mesh().faces();
+  for (Index v = 0; v < n; ++v) entries.emplace_back(v, v, 1.0);
+  for (Index f = 0; f < nf; ++f)
+    for (Index k = faces.begin(f); k < faces.end(f); ++k)
+      entries.emplace_back(n + f, faces.indices[k], virtuals.faces.weights[k]);
+  const Csr& cells = mesh.cell_vertices();
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (Index k = cells.begin(c); k < cells.end(c); ++k)
+      entries.emplace_back(n + nf + c, cells.indices[k], virtuals.cell_weights[k]);
+  SparseMatrix p(n + nf + mesh.n_cells(), n);
+  p.setFromTriplets(entries.begin(), entries.end());
+  return p;
+}
+
+void report_virtual_cells(const VirtualCells& virtuals, Diagnostics& diagnostics) {
+  report_virtual_vertices(virtuals.faces, diagnostics);
+  const auto list = [&](VirtualVertexStatus status) {
+    std::vector<Index> cells;
+    for (Index c = 0; c < static_cast<Index>(virtuals.cell_status.size()); ++c)
+      if (virtuals.cell_status[c] == status) cells.push_back(c);
+    return cells;
+  };
+  diagnostics.add("moved_cell_points",
+                  "cells whose virtual vertex flipped a virtual tetrahedron and was moved to the "
+                  "centre of the cell's kernel",
+                  list(VirtualVertexStatus::Moved));
+  diagnostics.add("flipped_cell_points",
+                  "cells whose virtual vertex flips a virtual tetrahedron and was left where it is "
+                  "(no kernel, or moving was switched off)",
+                  list(VirtualVertexStatus::Flipped));
+  diagnostics.add("degenerate_cells",
+                  "cells without volume; their virtual vertex is the mean of their vertices",
+                  list(VirtualVertexStatus::Degenerate));
+}
+
+}  // namespace carat
