@@ -3,74 +3,22 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
+#include "carat/mesh/accumulate.h"
+
 namespace carat {
 namespace {
+
+using detail::DisjointSets;
+using detail::RangeOf;
+using detail::Sum;
 
 constexpr double kPlanarity = 1e-6;   // distance from the mean plane over the diameter
 constexpr double kReflexSine = 1e-6;  // below it a corner counts as straight
 constexpr double kFlatFace = 1e-13;   // area over the squared diameter
 constexpr double kVanishing = 1e-13;  // sum of vector areas over the sum of their norms
-
-/// Compensated sum: plain sums of 10^6 equal areas lose five digits.
-class Sum {
- public:
-  void add(double value) {
-    const double corrected = value - carry_;
-    const double next = sum_ + corrected;
-    carry_ = (next - sum_) - corrected;
-    sum_ = next;
-  }
-  double value() const { return sum_; }
-
- private:
-  double sum_ = 0, carry_ = 0;
-};
-
-class RangeOf {
- public:
-  void add(double value) {
-    min_ = std::min(min_, value);
-    max_ = std::max(max_, value);
-    sum_.add(value);
-    ++n_;
-  }
-  double sum() const { return sum_.value(); }
-  Range range() const {
-    if (n_ == 0) return {};
-    // The rounded mean of equal values may leave their range by one unit.
-    return {min_, std::clamp(sum_.value() / n_, min_, max_), max_};
-  }
-
- private:
-  double min_ = std::numeric_limits<double>::infinity();
-  double max_ = -std::numeric_limits<double>::infinity();
-  Sum sum_;
-  double n_ = 0;
-};
-
-/// Disjoint sets of numbers; the root of a set is its lowest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(Index n) : parent_(static_cast<std::size_t>(n)) {
-    for (Index i = 0; i < n; ++i) parent_[i] = i;
-  }
-  Index root(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(Index i, Index j) {
-    i = root(i);
-    j = root(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  Array<Index> parent_;
-};
 
 DisjointSets join_face_vertices(const PolygonMesh& mesh) {
   DisjointSets sets(mesh.n_vertices());
