@@ -76,15 +76,15 @@ void add_fluxes(const PolygonMesh& mesh, const Data& data, BoundaryConditions& c
     const Vec3 midpoint = mesh.point(v1) / 2 + mesh.point(v2) / 2;
     const double flux = data.neumann ? (*data.neumann)(midpoint) : 0;
     if (data.robin) {
-      conditions.robin_edges.push_back(e);
+      conditions.robin_sides.push_back(e);
       conditions.robin_alpha.push_back((*data.robin)(midpoint));
       conditions.robin_g.push_back(flux);
     } else {
-      conditions.neumann_edges.push_back(e);
+      conditions.neumann_sides.push_back(e);
       conditions.neumann_flux.push_back(flux);
     }
   }
-  if (conditions.robin_edges.empty() && conditions.neumann_edges.empty())
+  if (conditions.robin_sides.empty() && conditions.neumann_sides.empty())
     throw InvalidOption(
         std::string(data.robin ? "--robin" : "--neumann") + ": no boundary edge is left for it; " +
         (data.dirichlet ? "every one has Dirichlet data at both ends, restrict them with "
@@ -104,9 +104,9 @@ void remove_floating_means(const PolygonMesh& mesh, const Discretization& discre
       anchored[static_cast<std::size_t>(c)] = true;
   };
   for (const Index v : conditions.dirichlet_vertices) anchor(v);
-  for (std::size_t k = 0; k < conditions.robin_edges.size(); ++k)
+  for (std::size_t k = 0; k < conditions.robin_sides.size(); ++k)
     if (conditions.robin_alpha[k] > 0)
-      anchor(mesh.edges().vertices[static_cast<std::size_t>(conditions.robin_edges[k])][0]);
+      anchor(mesh.edges().vertices[static_cast<std::size_t>(conditions.robin_sides[k])][0]);
 
   std::vector<double> sum(anchored.size(), 0), total(anchored.size(), 0);
   const auto for_each_floating = [&](const auto& visit) {
@@ -173,12 +173,12 @@ void run(Session& session, const Options& options) {
   const PoissonSolution solution = session.phase("solve", [&] { return poisson.solve(f); });
 
   session.report()["sizes"]["dirichlet_vertices"] = conditions.dirichlet_vertices.size();
-  session.report()["sizes"]["neumann_edges"] = conditions.neumann_edges.size();
-  session.report()["sizes"]["robin_edges"] = conditions.robin_edges.size();
+  session.report()["sizes"]["neumann_edges"] = conditions.neumann_sides.size();
+  session.report()["sizes"]["robin_edges"] = conditions.robin_sides.size();
   session.say(
       count(static_cast<std::int64_t>(conditions.dirichlet_vertices.size()), "Dirichlet vertex") +
-      ", " + count(static_cast<std::int64_t>(conditions.neumann_edges.size()), "Neumann edge") +
-      ", " + count(static_cast<std::int64_t>(conditions.robin_edges.size()), "Robin edge"));
+      ", " + count(static_cast<std::int64_t>(conditions.neumann_sides.size()), "Neumann edge") +
+      ", " + count(static_cast<std::int64_t>(conditions.robin_sides.size()), "Robin edge"));
   report_solution(session, solution, poisson.info());
   data.fields.vertex = {scalar_field("u", solution.values)};
   data.fields.face.clear();

@@ -27,7 +27,7 @@ int main() {
     for (carat::Index e = 0; e < mesh.n_edges(); ++e) {
       const auto [a, b] = mesh.edges().vertices[e];
       if (y[a] == 1 && y[b] == 1) {
-        conditions.neumann_edges.push_back(e);
+        conditions.neumann_sides.push_back(e);
         conditions.neumann_flux.push_back(2);
       }
     }

@@ -56,7 +56,7 @@ TEST_F(PoissonTest, neumann_fluxes_drive_a_linear_flow) {
   const BoundaryEdges edges = boundary_edges(mesh, 6);
   for (std::size_t k = 0; k < edges.edges.size(); ++k)
     if (edges.sides[k] < 2) {
-      conditions.neumann_edges.push_back(edges.edges[k]);
+      conditions.neumann_sides.push_back(edges.edges[k]);
       conditions.neumann_flux.push_back(edges.sides[k] == 1 ? 2 : -2);
     }
   const PoissonSolution s = Poisson(mesh, d, conditions).solve(zero);
@@ -72,7 +72,7 @@ TEST_F(PoissonTest, robin_data_fix_the_constant) {
   const BoundaryEdges edges = boundary_edges(mesh, 6);
   for (std::size_t k = 0; k < edges.edges.size(); ++k)
     if (edges.sides[k] < 2) {
-      conditions.robin_edges.push_back(edges.edges[k]);
+      conditions.robin_sides.push_back(edges.edges[k]);
       conditions.robin_alpha.push_back(2);
       conditions.robin_g.push_back(edges.sides[k] == 1 ? 1 + 2 * 6 : -1);
     }
@@ -115,14 +115,14 @@ TEST_F(PoissonTest, bad_data_are_refused) {
   c.dirichlet_values = {0, 1};
   refused(c);
   c = {};
-  c.neumann_edges = {mesh.n_edges()};
+  c.neumann_sides = {mesh.n_edges()};
   c.neumann_flux = {0};
   refused(c);
   for (Index e = 0; e < mesh.n_edges(); ++e)
-    if (mesh.edges().corners.size(e) == 2) c.neumann_edges = {e};
+    if (mesh.edges().corners.size(e) == 2) c.neumann_sides = {e};
   refused(c);
   c = {};
-  c.robin_edges = {0};
+  c.robin_sides = {0};
   c.robin_g = {0};
   c.robin_alpha = {-1};
   refused(c);

@@ -48,6 +48,11 @@ HeatGeodesics::HeatGeodesics(const PolygonMesh& mesh, Discretization discretizat
   heat_ = std::make_unique<SpdSolver>(heat, excluded);
 }
 
+// All that it takes from the mesh are lengths of edges.
+HeatGeodesics::HeatGeodesics(const PolyhedralMesh& mesh, Discretization discretization,
+                             const HeatGeodesicsOptions& options)
+    : HeatGeodesics(mesh.face_mesh(), std::move(discretization), options) {}
+
 GeodesicDistance HeatGeodesics::distance(const std::vector<GeodesicSource>& sources) const {
   const Index n = discretization_.n_vertices();
   const std::vector<Index>& component = poisson_->components();
@@ -62,7 +67,7 @@ GeodesicDistance HeatGeodesics::distance(const std::vector<GeodesicSource>& sour
                           {source.vertex});
     if (component[source.vertex] < 0)
       throw InvalidOption("source vertex " + std::to_string(source.vertex) +
-                              " has no face with an area; choose another",
+                              " has no face with an area, or cell with a volume; choose another",
                           {source.vertex});
     if (!(source.weight > 0) || !std::isfinite(source.weight))
       throw InvalidOption("the weight of source vertex " + std::to_string(source.vertex) + " is " +

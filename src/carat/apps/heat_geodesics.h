@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "carat/mesh/polyhedral_mesh.h"
 #include "carat/operators/discretization.h"
 #include "carat/solve/spd_solver.h"
 
@@ -42,8 +43,10 @@ class HeatGeodesics {
   /// \throws SolverFailure  a system is not positive definite
   HeatGeodesics(const PolygonMesh& mesh, Discretization discretization,
                 const HeatGeodesicsOptions& options = {});
+  HeatGeodesics(const PolyhedralMesh& mesh, Discretization discretization,
+                const HeatGeodesicsOptions& options = {});
 
-  /// \throws InvalidOption  no source, a vertex that does not exist or has no face, weight <= 0
+  /// \throws InvalidOption  no source, a vertex that does not exist or has no element, weight <= 0
   GeodesicDistance distance(const std::vector<GeodesicSource>& sources) const;
   GeodesicDistance distance(Index source) const { return distance({GeodesicSource{source}}); }
 

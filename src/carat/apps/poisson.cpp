@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "carat/base/error.h"
 
@@ -11,101 +13,36 @@ namespace {
 // A right-hand side that misses balance by more than this is a mistake, not discretisation error.
 constexpr double kImbalanceLimit = 0.1;
 
-void check_sizes(std::size_t a, std::size_t b, const char* what) {
-  if (a != b)
-    throw InvalidOption(std::string(what) + ": lists of " + std::to_string(a) + " and " +
-                        std::to_string(b) + " entries; they must be equally long");
-}
-
-void check_finite(double value, const char* what, Index element) {
-  if (!std::isfinite(value))
-    throw InvalidOption(std::string(what) + " at " + std::to_string(element) + " is " +
-                            std::to_string(value) + "; it must be a finite number",
-                        {element});
-}
-
-/// Half the length of a boundary edge: its share of each end in the linear trace.
-double half_length(const PolygonMesh& mesh, Index edge, const char* what) {
-  const EdgeTopology& edges = mesh.edges();
-  if (edge < 0 || edge >= edges.size())
-    throw InvalidOption(std::string(what) + ": edge " + std::to_string(edge) +
-                            " does not exist; the mesh has edges 0 to " +
-                            std::to_string(edges.size() - 1),
-                        {edge});
-  if (edges.corners.size(edge) != 1)
-    throw InvalidOption(std::string(what) + ": edge " + std::to_string(edge) + " has " +
-                            std::to_string(edges.corners.size(edge)) +
-                            " faces and is not on the boundary",
-                        {edge});
-  const auto [v1, v2] = edges.vertices[edge];
-  return (mesh.point(v2) - mesh.point(v1)).norm() / 2;
-}
-
 }  // namespace
 
 Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
                  const BoundaryConditions& conditions)
-    : system_(discretization.stiffness), mass_(discretization.mass) {
-  const Index n = mesh.n_vertices();
-  if (system_.rows() != n)
-    throw InvalidOption("the discretization has " + std::to_string(system_.rows()) +
-                        " vertices, the mesh " + std::to_string(n));
-  check_sizes(conditions.dirichlet_vertices.size(), conditions.dirichlet_values.size(),
-              "Dirichlet data");
-  check_sizes(conditions.neumann_edges.size(), conditions.neumann_flux.size(), "Neumann data");
-  check_sizes(conditions.robin_edges.size(), conditions.robin_alpha.size(), "Robin data");
-  check_sizes(conditions.robin_edges.size(), conditions.robin_g.size(), "Robin data");
+    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions) {}
 
-  component_ = matrix_components(system_);
+Poisson::Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
+                 const BoundaryConditions& conditions)
+    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions) {}
+
+Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
+                 const BoundaryConditions& conditions)
+    : mass_(discretization.mass), boundary_load_(std::move(boundary.load)) {
+  const Index n = static_cast<Index>(boundary_load_.size());
+  if (discretization.n_vertices() != n)
+    throw InvalidOption("the discretization has " + std::to_string(discretization.n_vertices()) +
+                        " vertices, the mesh " + std::to_string(n));
+  component_ = matrix_components(discretization.stiffness);
   const Index n_components =
       component_.empty() ? 0 : *std::max_element(component_.begin(), component_.end()) + 1;
   floating_.assign(static_cast<std::size_t>(n_components), true);
-
-  boundary_load_ = Vector::Zero(n);
-  for (std::size_t k = 0; k < conditions.neumann_edges.size(); ++k) {
-    const Index edge = conditions.neumann_edges[k];
-    check_finite(conditions.neumann_flux[k], "Neumann flux", edge);
-    const double weight = half_length(mesh, edge, "Neumann data") * conditions.neumann_flux[k];
-    for (const Index v : mesh.edges().vertices[edge]) boundary_load_[v] += weight;
+  if (boundary.robin.nonZeros() == 0) {
+    system_ = discretization.stiffness;
+  } else {
+    system_ = discretization.stiffness + boundary.robin;
+    for (Index v = 0; v < n; ++v)
+      if (component_[v] >= 0 && SparseMatrix::InnerIterator(boundary.robin, v))
+        floating_[component_[v]] = false;
   }
-  for (std::size_t k = 0; k < conditions.robin_edges.size(); ++k) {
-    const Index edge = conditions.robin_edges[k];
-    const double alpha = conditions.robin_alpha[k];
-    check_finite(alpha, "Robin alpha", edge);
-    check_finite(conditions.robin_g[k], "Robin g", edge);
-    if (alpha < 0)
-      throw InvalidOption("Robin alpha at edge " + std::to_string(edge) + " is " +
-                              std::to_string(alpha) + "; it must not be negative",
-                          {edge});
-    const double half = half_length(mesh, edge, "Robin data");
-    for (const Index v : mesh.edges().vertices[edge]) {
-      system_.coeffRef(v, v) += alpha * half;
-      boundary_load_[v] += half * conditions.robin_g[k];
-      if (alpha > 0 && component_[v] >= 0) floating_[component_[v]] = false;
-    }
-  }
-
-  fixed_.assign(static_cast<std::size_t>(n), false);
-  fixed_values_ = Vector::Zero(n);
-  for (Index v = 0; v < n; ++v) fixed_[v] = component_[v] < 0;
-  std::vector<bool> given(static_cast<std::size_t>(n), false);
-  for (std::size_t k = 0; k < conditions.dirichlet_vertices.size(); ++k) {
-    const Index v = conditions.dirichlet_vertices[k];
-    const double value = conditions.dirichlet_values[k];
-    if (v < 0 || v >= n)
-      throw InvalidOption("Dirichlet data: vertex " + std::to_string(v) +
-                              " does not exist; the mesh has vertices 0 to " +
-                              std::to_string(n - 1),
-                          {v});
-    check_finite(value, "Dirichlet value", v);
-    if (given[v] && fixed_values_[v] != value)
-      throw InvalidOption("Dirichlet data: vertex " + std::to_string(v) + " has two values: " +
-                              std::to_string(fixed_values_[v]) + " and " + std::to_string(value),
-                          {v});
-    given[v] = fixed_[v] = true;
-    fixed_values_[v] = value;
-    if (component_[v] >= 0) floating_[component_[v]] = false;
-  }
+  fix_dirichlet_vertices(conditions);
 
   // A floating component is held at zero at its best determined vertex, and shifted afterwards.
   std::vector<bool> held = fixed_;
@@ -119,6 +56,39 @@ Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
   for (const Index v : ground)
     if (v >= 0) held[v] = true;
   solver_ = std::make_unique<SpdSolver>(system_, held);
+}
+
+void Poisson::fix_dirichlet_vertices(const BoundaryConditions& conditions) {
+  if (conditions.dirichlet_vertices.size() != conditions.dirichlet_values.size())
+    throw InvalidOption("Dirichlet data: lists of " +
+                        std::to_string(conditions.dirichlet_vertices.size()) + " and " +
+                        std::to_string(conditions.dirichlet_values.size()) +
+                        " entries; they must be equally long");
+  const Index n = static_cast<Index>(component_.size());
+  fixed_.assign(static_cast<std::size_t>(n), false);
+  fixed_values_ = Vector::Zero(n);
+  for (Index v = 0; v < n; ++v) fixed_[v] = component_[v] < 0;
+  std::vector<bool> given(static_cast<std::size_t>(n), false);
+  for (std::size_t k = 0; k < conditions.dirichlet_vertices.size(); ++k) {
+    const Index v = conditions.dirichlet_vertices[k];
+    const double value = conditions.dirichlet_values[k];
+    if (v < 0 || v >= n)
+      throw InvalidOption("Dirichlet data: vertex " + std::to_string(v) +
+                              " does not exist; the mesh has vertices 0 to " +
+                              std::to_string(n - 1),
+                          {v});
+    if (!std::isfinite(value))
+      throw InvalidOption("Dirichlet value at vertex " + std::to_string(v) + " is " +
+                              std::to_string(value) + "; it must be a finite number",
+                          {v});
+    if (given[v] && fixed_values_[v] != value)
+      throw InvalidOption("Dirichlet data: vertex " + std::to_string(v) + " has two values: " +
+                              std::to_string(fixed_values_[v]) + " and " + std::to_string(value),
+                          {v});
+    given[v] = fixed_[v] = true;
+    fixed_values_[v] = value;
+    if (component_[v] >= 0) floating_[component_[v]] = false;
+  }
 }
 
 PoissonSolution Poisson::solve(const Vector& f) const {

@@ -1,30 +1,17 @@
 #pragma once
-// Poisson's equation with mixed boundary conditions.
+// Poisson's equation with mixed boundary conditions, on surfaces and in volumes.
 
-#include <string>
+#include <memory>
 #include <vector>
 
+#include "carat/apps/boundary_conditions.h"
 #include "carat/operators/discretization.h"
 #include "carat/solve/spd_solver.h"
 
 namespace carat {
 
-/// Conditions on parts of the boundary; where there is none, the natural one K du/dn = 0 holds.
-/// Edges are numbered as in PolygonMesh::edges() and must lie on the boundary.
-struct BoundaryConditions {
-  /// u = value at these vertices (anywhere, not only on the boundary).
-  std::vector<Index> dirichlet_vertices{};
-  std::vector<double> dirichlet_values{};
-  /// K du/dn = flux over these edges, n the outward conormal: positive flux flows in.
-  std::vector<Index> neumann_edges{};
-  std::vector<double> neumann_flux{};
-  /// K du/dn + alpha u = g over these edges, alpha >= 0.
-  std::vector<Index> robin_edges{};
-  std::vector<double> robin_alpha{}, robin_g{};
-};
-
 struct PoissonSolution {
-  Vector values;  ///< one a vertex; vertices without a face keep their Dirichlet value or 0
+  Vector values;  ///< one a vertex; vertices of no element keep their Dirichlet value or 0
   /// |S u - b| / (|S| |u| + |b|), maximum norms over the free vertices.
   double relative_residual = 0;
   /// Components without Dirichlet or Robin data: their solution has mean zero (by mass).
@@ -34,14 +21,19 @@ struct PoissonSolution {
   double imbalance = 0;
 };
 
-/// Solves -div(K grad u) = f for any number of right-hand sides. K is part of the discretization.
+/// Solves -div(K grad u) = f for any number of right-hand sides.
+///
+/// K is part of the discretization: DiscretizationOptions::coefficient, and in volumes also
+/// cell_coefficient for scalars or symmetric tensors a cell.
 class Poisson {
  public:
-  /// \throws InvalidOption  vertex or edge out of range, an edge that is not on the boundary, a
+  /// \throws InvalidOption  vertex or side out of range, a side that is not on the boundary, a
   ///                        value that is not finite, alpha < 0, lists of different length,
   ///                        a vertex with two different Dirichlet values
   /// \throws SolverFailure  the system is not positive definite
   Poisson(const PolygonMesh& mesh, const Discretization& discretization,
+          const BoundaryConditions& conditions = {});
+  Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
           const BoundaryConditions& conditions = {});
 
   /// \param f  values at the vertices; the load is mass * f
@@ -53,7 +45,11 @@ class Poisson {
   const FactorInfo& info() const { return solver_->info(); }
 
  private:
-  SparseMatrix system_;  // stiffness plus Robin's diagonal
+  Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
+          const BoundaryConditions& conditions);
+  void fix_dirichlet_vertices(const BoundaryConditions& conditions);
+
+  SparseMatrix system_;  // stiffness plus Robin's matrix
   SparseMatrix mass_;
   Vector boundary_load_;     // Neumann and Robin
   std::vector<bool> fixed_;  // rows not solved for
