@@ -38,12 +38,12 @@ void check_cell_coefficient(const DiscretizationOptions& options, Index n_cells)
                        tensor.topLeftCorner<2, 2>().determinant() > 0 && tensor.determinant() > 0;
     if (sound) continue;
     std::string values;
-    for (Index i = 0; i < k.cols(); ++i) values += (i > 0 ? " " : "") + number(k(c, i));
-    throw InvalidOption(
-        "the coefficient of cell " + std::to_string(c) + " is " + values + "; it must be " +
-            (k.cols() == 1 ? "a positive finite number" : "a symmetric positive definite tensor") +
-            " in every cell",
-        {c});
+    for (Index i = 0; i < k.cols(); ++i) values.append(1, ' ').append(number(k(c, i)));
+    const char* const wanted =
+        k.cols() == 1 ? "a positive finite number" : "a symmetric positive definite tensor";
+    throw InvalidOption("the coefficient of cell " + std::to_string(c) + " is" + values +
+                            "; it must be " + wanted + " in every cell",
+                        {c});
   }
 }
 
