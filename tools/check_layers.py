@@ -23,6 +23,7 @@ REGISTRIES = [
     ("operators/operators.def", "CARAT_SURFACE_OPERATOR", "operators/surface"),
     ("operators/operators.def", "CARAT_VOLUME_OPERATOR", "operators/volume"),
     ("generators/families.def", "CARAT_FAMILY", "generators"),
+    ("generators/volume_families.def", "CARAT_VOLUME_FAMILY", "generators"),
     ("io/formats.def", "CARAT_FORMAT", "io"),
 ]
 TOP_FOLDERS = ("cli", "python")
@@ -106,6 +107,7 @@ def check_registry(root, definition, macro, folder):
     else:
         pattern = {
             "CARAT_FAMILY": r"^PolygonMesh generate_(\w+)\(const FamilyOptions",
+            "CARAT_VOLUME_FAMILY": r"^PolyhedralMesh generate_(\w+)\(const VolumeDomain",
             "CARAT_FORMAT": r"^FormatEntry (\w+)_format\(",
         }[macro]
         defined = {stem for stem, text in texts.items()

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "carat/base/error.h"
+#include "carat/generators/volume_domain.h"
 
 namespace carat {
 
@@ -12,17 +13,15 @@ namespace carat {
 #include "carat/generators/families.def"
 #undef CARAT_FAMILY
 
+#define CARAT_VOLUME_FAMILY(suffix, name, title) \
+  PolyhedralMesh generate_##suffix(const VolumeDomain& domain, const FamilyOptions& options);
+#include "carat/generators/volume_families.def"
+#undef CARAT_VOLUME_FAMILY
+
 namespace {
 
 constexpr double kMaxJitter = 0.5;
 constexpr double kMaxAnisotropy = 1000;
-
-std::string known_families() {
-  std::string names;
-  for (const FamilyEntry& family : mesh_families())
-    names += (names.empty() ? "" : ", ") + std::string(family.name);
-  return names;
-}
 
 // The comparisons are written so that a NaN fails them.
 void check_options(const FamilyOptions& options) {
@@ -37,6 +36,22 @@ void check_options(const FamilyOptions& options) {
                         ": it must lie between 1 (none) and 1000");
 }
 
+template <class Mesh>
+Mesh generate(const std::vector<FamilyEntryOf<Mesh>>& families, const char* kind,
+              const std::string& family, const FamilyOptions& options) {
+  const auto entry = std::find_if(families.begin(), families.end(),
+                                  [&](const auto& known) { return known.name == family; });
+  if (entry == families.end()) {
+    std::string names;
+    for (const auto& known : families)
+      names += (names.empty() ? "" : ", ") + std::string(known.name);
+    throw InvalidOption(std::string(kind) + " family '" + family + "' is unknown; choose one of " +
+                        names);
+  }
+  check_options(options);
+  return entry->generate(options);
+}
+
 }  // namespace
 
 const std::vector<FamilyEntry>& mesh_families() {
@@ -49,19 +64,27 @@ const std::vector<FamilyEntry>& mesh_families() {
 }
 
 const std::vector<VolumeFamilyEntry>& volume_families() {
-  static const std::vector<VolumeFamilyEntry> families;
+  static const std::vector<VolumeFamilyEntry> families{
+#define CARAT_VOLUME_FAMILY(suffix, name, title) \
+  {"cube-" name, title, "unit cube",             \
+   [](const FamilyOptions& options) { return generate_##suffix(kCube, options); }},
+#include "carat/generators/volume_families.def"
+#undef CARAT_VOLUME_FAMILY
+#define CARAT_VOLUME_FAMILY(suffix, name, title) \
+  {"ball-" name, title, "unit ball",             \
+   [](const FamilyOptions& options) { return generate_##suffix(kBall, options); }},
+#include "carat/generators/volume_families.def"
+#undef CARAT_VOLUME_FAMILY
+  };
   return families;
 }
 
 PolygonMesh generate_mesh(const std::string& family, const FamilyOptions& options) {
-  const auto& families = mesh_families();
-  const auto entry = std::find_if(families.begin(), families.end(),
-                                  [&](const FamilyEntry& known) { return known.name == family; });
-  if (entry == families.end())
-    throw InvalidOption("mesh family '" + family + "' is unknown; choose one of " +
-                        known_families());
-  check_options(options);
-  return entry->generate(options);
+  return generate(mesh_families(), "mesh", family, options);
+}
+
+PolyhedralMesh generate_volume(const std::string& family, const FamilyOptions& options) {
+  return generate(volume_families(), "volume mesh", family, options);
 }
 
 }  // namespace carat

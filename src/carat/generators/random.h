@@ -29,6 +29,16 @@ class RandomStream {
     }
   }
 
+  /// Uniform in the unit ball.
+  Vec3 in_ball() {
+    while (true) {
+      const double x = 2 * uniform() - 1;
+      const double y = 2 * uniform() - 1;
+      const double z = 2 * uniform() - 1;
+      if (x * x + y * y + z * z <= 1) return {x, y, z};
+    }
+  }
+
  private:
   static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15;
   static std::uint64_t mix(std::uint64_t z) {
