@@ -1,0 +1,323 @@
+// Polygon Laplacian Made Simple: Bunge, Herholz, Kazhdan, Botsch 2020, on polyhedra.
+// Linear elements on virtual tetrahedra (x_i, x_{i+1}, x_f, x_c), with the virtual vertices
+// prolonged from the cells' own: S = P^T S_tet P, M = P^T M_tet P.
+
+#include <algorithm>
+
+#include "carat/assembly/cell_assembly.h"
+#include "carat/assembly/pattern.h"
+#include "carat/base/error.h"
+#include "carat/kernels/tetrahedron.h"
+#include "carat/operators/common.h"
+#include "carat/operators/registry.h"
+#include "carat/operators/volume/incidence.h"
+#include "carat/prolongation/virtual_cells.h"
+
+namespace carat {
+namespace {
+
+class VolumeBungeAssembly final : public Assembly {
+ public:
+  VolumeBungeAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options);
+  void update(const Points& points) override;
+
+ private:
+  /// A virtual tetrahedron: the corner of its face and the next. On the side above a face, i and j
+  /// change places, so that the order of its points is the same on both sides.
+  struct Place {
+    Index tet, cell, face, corner, next;
+    bool above;
+  };
+
+  // Symbolic.
+  void number_tets();
+  void make_gradient_pattern();
+  Index collect_columns(Index c, Index* columns) const;
+
+  // Numeric.
+  void fill_forms();
+  void fill_cell(Index c, Array<Index>& place, Array<Index>& face_places);
+  VirtualTetMatrix stiffness_of(const Tetrahedron& tet, const Place& at) const;
+  void assemble_gradient();
+  void collect_frames();
+  void report();
+
+  /// Calls visit(place) for the virtual tetrahedra of a cell in the order of their numbers.
+  template <class Visit>
+  void for_tets(Index c, const Visit& visit) const;
+  Tetrahedron virtual_tet(const Place& at) const;
+  Vec3 position(Index v) const { return points_.row(v).transpose(); }
+  Index vertex(Index corner) const { return mesh_.face_mesh().faces().indices[corner]; }
+  Index n_tets() const { return first_tet_.back(); }
+
+  PolyhedralMesh mesh_;
+  DiscretizationOptions options_;
+  VolumeIncidence incidence_;
+  Array<Index> first_tet_;  // cell -> its first virtual tetrahedron, n_cells + 1 numbers
+  VirtualCells virtuals_;
+  CellForm stiffness_, mass_;
+  Vec3 origin_ = Vec3::Zero();
+  Points points_;  // relative to the origin, so that no accuracy is lost far from it
+};
+
+VolumeBungeAssembly::VolumeBungeAssembly(const PolyhedralMesh& mesh,
+                                         const DiscretizationOptions& options)
+    : mesh_(mesh), options_(options), incidence_(volume_incidence(mesh_)) {
+  check_cell_coefficient(options_, mesh_.n_cells());
+  result_.name = "bunge";
+  number_tets();
+  result_.stiffness = cell_pattern(incidence_, options_.threads);
+  result_.mass = options_.lumped_mass ? diagonal_pattern(mesh_.n_vertices()) : result_.stiffness;
+  result_.sample_measure.resize(n_tets());
+  if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
+}
+
+void VolumeBungeAssembly::number_tets() {
+  const Csr& faces = mesh_.face_mesh().faces();
+  first_tet_.resize(static_cast<std::size_t>(mesh_.n_cells()) + 1);
+  std::int64_t total = 0;
+  for (Index c = 0; c < mesh_.n_cells(); ++c) {
+    first_tet_[c] = static_cast<Index>(total);
+    for (const Index f : mesh_.cell(c)) total += faces.size(f);
+    if (3 * total > std::numeric_limits<Index>::max())
+      throw InvalidMesh("the gradient on the virtual tetrahedra of cells 0 to " +
+                        std::to_string(c) +
+                        " alone has more rows than 32 bits can number; split the mesh");
+  }
+  first_tet_[mesh_.n_cells()] = static_cast<Index>(total);
+}
+
+template <class Visit>
+void VolumeBungeAssembly::for_tets(Index c, const Visit& visit) const {
+  const Csr& faces = mesh_.face_mesh().faces();
+  Index tet = first_tet_[c];
+  for (const Index f : mesh_.cell(c)) {
+    const bool above = mesh_.face_cells()[f].above == c;
+    for (Index corner = faces.begin(f); corner < faces.end(f); ++corner) {
+      const Index next = corner + 1 == faces.end(f) ? faces.begin(f) : corner + 1;
+      visit(Place{tet++, c, f, corner, next, above});
+    }
+  }
+}
+
+Tetrahedron VolumeBungeAssembly::virtual_tet(const Place& at) const {
+  const Vec3 xi = position(vertex(at.corner)), xj = position(vertex(at.next));
+  const Vec3 xf = virtuals_.face_points.row(at.face).transpose();
+  const Vec3 xc = virtuals_.cell_points.row(at.cell).transpose();
+  Tetrahedron tet = at.above ? tetrahedron(xj, xi, xf, xc, options_.eps_rel)
+                             : tetrahedron(xi, xj, xf, xc, options_.eps_rel);
+  if (at.above) std::swap(tet.normal[0], tet.normal[1]);
+  return tet;
+}
+
+VirtualTetMatrix VolumeBungeAssembly::stiffness_of(const Tetrahedron& tet, const Place& at) const {
+  double k = 1;
+  if (options_.coefficient)
+    k = coefficient_at(options_,
+                       origin_ + (position(vertex(at.corner)) + position(vertex(at.next)) +
+                                  Vec3(virtuals_.face_points.row(at.face).transpose()) +
+                                  Vec3(virtuals_.cell_points.row(at.cell).transpose())) /
+                                     4);
+  const Matrix& of_cells = options_.cell_coefficient;
+  if (of_cells.cols() == 1) k *= of_cells(at.cell, 0);
+  VirtualTetMatrix a{};
+  if (of_cells.cols() == 6) {
+    const Eigen::Matrix3d tensor = k * cell_tensor(options_, at.cell);
+    a.ij = tet.coupling(0, 1, tensor);
+    a.fi = tet.coupling(0, 2, tensor);
+    a.fj = tet.coupling(1, 2, tensor);
+    a.ci = tet.coupling(0, 3, tensor);
+    a.cj = tet.coupling(1, 3, tensor);
+    a.cf = tet.coupling(2, 3, tensor);
+  } else {
+    a.ij = k * tet.coupling(0, 1);
+    a.fi = k * tet.coupling(0, 2);
+    a.fj = k * tet.coupling(1, 2);
+    a.ci = k * tet.coupling(0, 3);
+    a.cj = k * tet.coupling(1, 3);
+    a.cf = k * tet.coupling(2, 3);
+  }
+  // Rows sum to zero.
+  a.ii = -(a.ij + a.fi + a.ci);
+  a.jj = -(a.ij + a.fj + a.cj);
+  a.ff = -(a.fi + a.fj + a.cf);
+  a.cc = -(a.ci + a.cj + a.cf);
+  return a;
+}
+
+VirtualTetMatrix mass_of(double volume) {
+  const double own = volume / 10, common = volume / 20;
+  return {own, own, own, own, common, common, common, common, common, common};
+}
+
+void VolumeBungeAssembly::fill_cell(Index c, Array<Index>& place, Array<Index>& face_places) {
+  const Array<double>& weights = virtuals_.faces.weights;
+  CellFormFiller stiffness(stiffness_, incidence_, weights, c);
+  CellFormFiller mass(mass_, incidence_, weights, c);
+  Index k = 0;
+  for (const Index v : mesh_.cell_vertices().row(c)) place[v] = k++;
+  for_tets(c, [&](const Place& at) {
+    const Tetrahedron tet = virtual_tet(at);
+    const double volume = tet.volume();
+    result_.sample_measure[at.tet] = volume;
+    const Index i = place[vertex(at.corner)], j = place[vertex(at.next)];
+    if (volume > 0) {
+      stiffness.add(at.face, at.corner, at.next, i, j, stiffness_of(tet, at));
+      mass.add(at.face, at.corner, at.next, i, j, mass_of(volume));
+    }
+    face_places.push_back(i);
+    if (at.next > at.corner) return;
+    stiffness.end_face(at.face, face_places.data());
+    mass.end_face(at.face, face_places.data());
+    face_places.clear();
+  });
+}
+
+void VolumeBungeAssembly::fill_forms() {
+  stiffness_.reset(incidence_);
+  mass_.reset(incidence_);
+  // The caller's function is not asked to be thread-safe.
+  const int threads = options_.coefficient ? 1 : options_.threads;
+  parallel_blocks(mesh_.n_cells(), threads, [&](int, Index begin, Index end) {
+    Array<Index> place(static_cast<std::size_t>(mesh_.n_vertices())), face_places;
+    for (Index c = begin; c < end; ++c) fill_cell(c, place, face_places);
+  });
+}
+
+Index VolumeBungeAssembly::collect_columns(Index c, Index* columns) const {
+  const std::span<const Index> vertices = mesh_.cell_vertices().row(c);
+  std::sort(columns, std::copy(vertices.begin(), vertices.end(), columns));
+  return static_cast<Index>(vertices.size());
+}
+
+void VolumeBungeAssembly::make_gradient_pattern() {
+  result_.gradient_dimension = 3;
+  Array<Index> row_sizes(3 * static_cast<std::size_t>(n_tets()));
+  for (Index c = 0; c < mesh_.n_cells(); ++c)
+    std::fill(row_sizes.begin() + 3 * std::ptrdiff_t{first_tet_[c]},
+              row_sizes.begin() + 3 * std::ptrdiff_t{first_tet_[c + 1]},
+              mesh_.cell_vertices().size(c));
+  result_.gradient = allocate_rows(3 * n_tets(), mesh_.n_vertices(), row_sizes,
+                                   "the gradient on virtual tetrahedra");
+  Index* const inner = result_.gradient.innerIndexPtr();
+  const Index* const outer = result_.gradient.outerIndexPtr();
+  parallel_blocks(mesh_.n_cells(), options_.threads, [&](int, Index begin, Index end) {
+    for (Index c = begin; c < end; ++c) {
+      Index* const first = inner + outer[3 * first_tet_[c]];
+      const Index n = collect_columns(c, first);
+      for (Index* row = first + n; row < inner + outer[3 * first_tet_[c + 1]]; row += n)
+        std::copy(first, first + n, row);
+    }
+  });
+}
+
+void VolumeBungeAssembly::assemble_gradient() {
+  const Csr& faces = mesh_.face_mesh().faces();
+  const Index* const outer = result_.gradient.outerIndexPtr();
+  const Index* const inner = result_.gradient.innerIndexPtr();
+  double* const values = result_.gradient.valuePtr();
+  parallel_blocks(mesh_.n_cells(), options_.threads, [&](int, Index begin, Index end) {
+    Array<Index> place(static_cast<std::size_t>(mesh_.n_vertices()));
+    Vector of_face, of_cell;  // weights of the virtual vertices by the cell's columns
+    for (Index c = begin; c < end; ++c) {
+      const Index n = mesh_.cell_vertices().size(c);
+      const Index* const columns = inner + outer[3 * first_tet_[c]];
+      for (Index k = 0; k < n; ++k) place[columns[k]] = k;
+      of_cell.setZero(n);
+      for (Index k = mesh_.cell_vertices().begin(c); k < mesh_.cell_vertices().end(c); ++k)
+        of_cell[place[mesh_.cell_vertices().indices[k]]] = virtuals_.cell_weights[k];
+      for_tets(c, [&](const Place& at) {
+        if (at.corner == faces.begin(at.face)) {
+          of_face.setZero(n);
+          for (Index k = at.corner; k < faces.end(at.face); ++k)
+            of_face[place[vertex(k)]] += virtuals_.faces.weights[k];
+        }
+        double* const rows = values + outer[3 * at.tet];
+        const Tetrahedron tet = virtual_tet(at);
+        if (!(tet.determinant > 0)) {
+          std::fill(rows, rows + 3 * n, 0.0);
+          return;
+        }
+        const Index i = place[vertex(at.corner)], j = place[vertex(at.next)];
+        for (Index d = 0; d < 3; ++d) {
+          const auto hat = [&](int a) { return tet.normal[a][d] / tet.determinant; };
+          double* const row = rows + d * n;
+          const double at_face = hat(2), at_cell = hat(3);
+          for (Index k = 0; k < n; ++k) row[k] = at_face * of_face[k] + at_cell * of_cell[k];
+          row[i] += hat(0);
+          row[j] += hat(1);
+        }
+      });
+    }
+  });
+}
+
+void VolumeBungeAssembly::collect_frames() {
+  result_.frames.parts.clear();
+  result_.frames.parts.reserve(static_cast<std::size_t>(n_tets()));
+  for (Index c = 0; c < mesh_.n_cells(); ++c)
+    for_tets(c, [&](const Place& at) {
+      const double volume = result_.sample_measure[at.tet];
+      if (volume > 0)
+        result_.frames.parts.push_back(
+            {volume, at.tet, c, {vertex(at.corner), vertex(at.next), -1}});
+    });
+}
+
+void VolumeBungeAssembly::report() {
+  result_.diagnostics = {};
+  report_unreferenced(mesh_, result_.diagnostics);
+  report_virtual_cells(virtuals_, result_.diagnostics);
+  std::vector<Index> excluded;
+  for (Index tet = 0; tet < n_tets(); ++tet)
+    if (!(result_.sample_measure[tet] > 0)) excluded.push_back(tet);
+  report_degenerate(
+      std::move(excluded), options_, "virtual tet",
+      [&](Index tet) {
+        const auto end = std::upper_bound(first_tet_.begin(), first_tet_.end(), tet);
+        std::string text;
+        for_tets(static_cast<Index>(end - first_tet_.begin()) - 1, [&](const Place& at) {
+          if (at.tet == tet)
+            text = "cell " + std::to_string(at.cell) + ", face " + std::to_string(at.face) +
+                   ", vertices " + std::to_string(vertex(at.corner)) + " and " +
+                   std::to_string(vertex(at.next));
+        });
+        return text;
+      },
+      result_.diagnostics);
+}
+
+void VolumeBungeAssembly::update(const Points& points) {
+  centre_points(points, points_, origin_);
+  update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
+  fill_forms();
+  const auto assemble = [&](SparseMatrix& matrix, bool lumped, const CellForm& form) {
+    assemble_cell_form(matrix, lumped, incidence_, virtuals_.faces.weights, virtuals_.cell_weights,
+                       form, options_.threads);
+  };
+  assemble(result_.stiffness, false, stiffness_);
+  assemble(result_.mass, options_.lumped_mass, mass_);
+  if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
+  if (options_.parts == DiscretizationParts::Frames) collect_frames();
+  report();
+}
+
+}  // namespace
+
+const VolumeOperator bunge_volume_operator = {
+    "bunge",
+    "Polygon Laplacian: linear elements on virtual tetrahedra",
+    "Bunge, Herholz, Kazhdan, Botsch: Polygon Laplacian Made Simple, 2020",
+    {.symmetric = true,
+     .semidefinite = true,
+     .kernel_is_constants = true,
+     .linear_precision = true,
+     .equals_cotan_on_simplices = true,
+     .simplices_only = false,
+     .face_local = true},
+    [](const PolyhedralMesh& mesh,
+       const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
+      return std::make_unique<VolumeBungeAssembly>(mesh, options);
+    }};
+
+}  // namespace carat

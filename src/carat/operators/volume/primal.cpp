@@ -1,0 +1,196 @@
+// The cotan Laplacian of tetrahedral meshes, see Crane 2019: linear elements,
+// S_ij = -1/6 of the sum of l_kl cot(theta_kl), kl the edges opposite to ij; the mass is lumped by
+// quarters of tetrahedra.
+
+#include <algorithm>
+
+#include "carat/assembly/cell_assembly.h"
+#include "carat/assembly/pattern.h"
+#include "carat/base/error.h"
+#include "carat/kernels/tetrahedron.h"
+#include "carat/operators/common.h"
+#include "carat/operators/registry.h"
+#include "carat/operators/volume/incidence.h"
+
+namespace carat {
+namespace {
+
+class PrimalAssembly final : public Assembly {
+ public:
+  PrimalAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options);
+  void update(const Points& points) override;
+
+ private:
+  void make_gradient_pattern();
+  void compute_terms();
+  void fill_tet(Index c);
+  void assemble_gradient();
+  void collect_frames();
+  void report();
+
+  std::span<const Index> vertices(Index c) const { return mesh_.cell_vertices().row(c); }
+  /// Of the cell's vertices in their order: those of its first face, then the fourth.
+  Tetrahedron tet(Index c) const;
+
+  PolyhedralMesh mesh_;
+  DiscretizationOptions options_;
+  VolumeIncidence incidence_;
+  Array<double> couplings_;  // 16 a cell
+  Vec3 origin_ = Vec3::Zero();
+  Points points_;  // relative to the origin, so that no accuracy is lost far from it
+};
+
+PrimalAssembly::PrimalAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options)
+    : mesh_(mesh), options_(options), incidence_(volume_incidence(mesh_)) {
+  for (Index c = 0; c < mesh_.n_cells(); ++c)
+    if (mesh_.cells().size(c) != 4 || mesh_.cell_vertices().size(c) != 4)
+      throw InvalidMesh("cell " + std::to_string(c) + " has " +
+                            std::to_string(mesh_.cells().size(c)) + " faces and " +
+                            std::to_string(mesh_.cell_vertices().size(c)) +
+                            " vertices; the primal operator needs tetrahedra: split the cells, or "
+                            "use the operators diamond or bunge",
+                        {c});
+  check_cell_coefficient(options_, mesh_.n_cells());
+  result_.name = "primal";
+  result_.stiffness = cell_pattern(incidence_, options_.threads);
+  result_.mass = diagonal_pattern(mesh_.n_vertices());
+  result_.sample_measure.resize(mesh_.n_cells());
+  couplings_.resize(16 * static_cast<std::size_t>(mesh_.n_cells()));
+  if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
+}
+
+Tetrahedron PrimalAssembly::tet(Index c) const {
+  const std::span<const Index> v = vertices(c);
+  const auto x = [&](std::size_t k) -> Vec3 { return points_.row(v[k]).transpose(); };
+  if (mesh_.face_cells()[mesh_.cell(c)[0]].below == c)
+    return tetrahedron(x(0), x(1), x(2), x(3), options_.eps_rel);
+  Tetrahedron turned = tetrahedron(x(1), x(0), x(2), x(3), options_.eps_rel);
+  std::swap(turned.normal[0], turned.normal[1]);
+  return turned;
+}
+
+void PrimalAssembly::fill_tet(Index c) {
+  double* const s = couplings_.data() + 16 * std::size_t(c);
+  const Tetrahedron t = tet(c);
+  result_.sample_measure[c] = t.volume();
+  std::fill(s, s + 16, 0.0);
+  if (!(t.determinant > 0)) return;
+  double k = 1;
+  if (options_.coefficient) {
+    Vec3 sum = Vec3::Zero();
+    for (const Index v : vertices(c)) sum += points_.row(v).transpose();
+    k = coefficient_at(options_, origin_ + sum / 4);
+  }
+  const Eigen::Matrix3d tensor = k * cell_tensor(options_, c);
+  const bool scalar = options_.cell_coefficient.cols() != 6;
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < a; ++b) {
+      const double value = scalar ? tensor(0, 0) * t.coupling(a, b) : t.coupling(a, b, tensor);
+      s[4 * a + b] = s[4 * b + a] = value;
+      s[5 * a] -= value;
+      s[5 * b] -= value;
+    }
+}
+
+void PrimalAssembly::compute_terms() {
+  // The caller's function is not asked to be thread-safe.
+  const int threads = options_.coefficient ? 1 : options_.threads;
+  parallel_blocks(mesh_.n_cells(), threads, [&](int, Index begin, Index end) {
+    for (Index c = begin; c < end; ++c) fill_tet(c);
+  });
+}
+
+void PrimalAssembly::make_gradient_pattern() {
+  if (std::int64_t{mesh_.n_cells()} * 3 > std::numeric_limits<Index>::max())
+    throw InvalidMesh("the gradient of " + std::to_string(mesh_.n_cells()) +
+                      " tetrahedra has more rows than 32 bits can number; split the mesh");
+  result_.gradient_dimension = 3;
+  result_.gradient = allocate_rows(3 * mesh_.n_cells(), mesh_.n_vertices(),
+                                   Array<Index>(3 * static_cast<std::size_t>(mesh_.n_cells()), 4),
+                                   "the gradient on tetrahedra");
+  for (Index c = 0; c < mesh_.n_cells(); ++c) {
+    Index* const columns =
+        result_.gradient.innerIndexPtr() + result_.gradient.outerIndexPtr()[3 * c];
+    std::sort(columns, std::copy(vertices(c).begin(), vertices(c).end(), columns));
+    std::copy(columns, columns + 4, columns + 4);
+    std::copy(columns, columns + 4, columns + 8);
+  }
+}
+
+void PrimalAssembly::assemble_gradient() {
+  double* const values = result_.gradient.valuePtr();
+  const Index* const inner = result_.gradient.innerIndexPtr();
+  parallel_blocks(mesh_.n_cells(), options_.threads, [&](int, Index begin, Index end) {
+    for (Index c = begin; c < end; ++c) {
+      const Index first = result_.gradient.outerIndexPtr()[3 * c];
+      const Tetrahedron t = tet(c);
+      for (std::size_t a = 0; a < 4; ++a) {
+        const Index* const columns = inner + first;
+        const std::ptrdiff_t place = std::find(columns, columns + 4, vertices(c)[a]) - columns;
+        for (Index d = 0; d < 3; ++d)
+          values[first + 4 * d + place] = t.determinant > 0 ? t.normal[a][d] / t.determinant : 0.0;
+      }
+    }
+  });
+}
+
+void PrimalAssembly::collect_frames() {
+  // A part names up to three vertices: every tetrahedron is two halves with two vertices each.
+  result_.frames.parts.clear();
+  for (Index c = 0; c < mesh_.n_cells(); ++c) {
+    const double half = result_.sample_measure[c] / 2;
+    const std::span<const Index> v = vertices(c);
+    if (!(half > 0)) continue;
+    result_.frames.parts.push_back({half, c, c, {v[0], v[1], -1}});
+    result_.frames.parts.push_back({half, c, c, {v[2], v[3], -1}});
+  }
+}
+
+void PrimalAssembly::report() {
+  result_.diagnostics = {};
+  report_unreferenced(mesh_, result_.diagnostics);
+  std::vector<Index> excluded;
+  for (Index c = 0; c < mesh_.n_cells(); ++c)
+    if (!(result_.sample_measure[c] > 0)) excluded.push_back(c);
+  report_degenerate(
+      std::move(excluded), options_, "cell",
+      [&](Index c) {
+        const std::span<const Index> v = vertices(c);
+        return "vertices " + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " +
+               std::to_string(v[2]) + " and " + std::to_string(v[3]);
+      },
+      result_.diagnostics);
+}
+
+void PrimalAssembly::update(const Points& points) {
+  centre_points(points, points_, origin_);
+  compute_terms();
+  assemble_cell_blocks(result_.stiffness, false, incidence_, options_.threads,
+                       [&](Index c, Index a, Index b) {
+                         return couplings_[16 * std::size_t(c) + std::size_t(4 * a + b)];
+                       });
+  assemble_cell_blocks(
+      result_.mass, true, incidence_, options_.threads,
+      [&](Index c, Index a, Index b) { return a == b ? result_.sample_measure[c] / 4 : 0.0; });
+  if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
+  if (options_.parts == DiscretizationParts::Frames) collect_frames();
+  report();
+}
+
+}  // namespace
+
+const VolumeOperator primal_volume_operator = {
+    "primal",
+    "Cotan Laplacian of tetrahedra: linear elements",
+    "Crane: The n-dimensional cotangent formula, 2019",
+    {.symmetric = true,
+     .semidefinite = true,
+     .kernel_is_constants = true,
+     .linear_precision = true,
+     .equals_cotan_on_simplices = true,
+     .simplices_only = true,
+     .face_local = true},
+    [](const PolyhedralMesh& mesh, const DiscretizationOptions& options)
+        -> std::unique_ptr<Assembly> { return std::make_unique<PrimalAssembly>(mesh, options); }};
+
+}  // namespace carat
