@@ -1,0 +1,93 @@
+// Matrices of independent implementations on five small volume meshes; data/README.md gives their
+// provenance. Agreement is max |A - B| / max |B| over all entries; the values are good to 1e-12.
+
+#include <gtest/gtest.h>
+
+#include "carat/operators/registry.h"
+#include "carat/prolongation/virtual_cells.h"
+#include "support/volume_reference.h"
+
+namespace carat {
+namespace {
+
+constexpr double kAgreement = 1e-10;
+
+class VolumeReference : public testing::TestWithParam<const char*> {
+ protected:
+  std::string path(const std::string& file) const {
+    return std::string(CARAT_REFERENCE_DATA) + "/" + GetParam() + "/" + file;
+  }
+  PolyhedralMesh mesh() const { return test::read_plain_ovm(path("mesh.ovm")); }
+
+  void expect_agreement(const SparseMatrix& matrix, const std::string& name) const {
+    const Matrix expected = test::read_dense_mtx(path(name + ".mtx"));
+    ASSERT_EQ(matrix.rows(), expected.rows());
+    ASSERT_EQ(matrix.cols(), expected.cols());
+    const double difference =
+        (Matrix(matrix) - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
+    EXPECT_LT(difference, kAgreement) << name;
+  }
+  static DiscretizationOptions options(VirtualPoint point) {
+    DiscretizationOptions result;
+    result.virtual_vertex = {point, AffineWeights::MinimumNorm, true};
+    return result;
+  }
+  void expect_bunge(VirtualPoint point, const std::string& prefix) const {
+    DiscretizationOptions opts = options(point);
+    opts.lumped_mass = true;
+    const Discretization d = discretize(mesh(), "bunge", opts);
+    expect_agreement(d.stiffness, prefix + "_stiffness");
+    expect_agreement(d.mass, prefix + "_mass_lumped");
+    // The consistent mass has the same row sums.
+    opts.lumped_mass = false;
+    const Vector sums = discretize(mesh(), "bunge", opts).lumped_mass();
+    EXPECT_LT((sums - Vector(d.mass.diagonal())).cwiseAbs().maxCoeff(),
+              kAgreement * sums.maxCoeff());
+  }
+  void expect_diamond(VirtualPoint point, const std::string& prefix) const {
+    const Discretization d = discretize(mesh(), "diamond", options(point));
+    expect_agreement(d.stiffness, prefix + "_stiffness");
+    expect_agreement(d.mass, prefix + "_mass");
+  }
+};
+
+TEST_P(VolumeReference, prolongation) {
+  const PolyhedralMesh m = mesh();
+  VirtualCells virtuals;
+  update_virtual_cells(m, m.points(), options(VirtualPoint::AreaMinimizer).virtual_vertex, 0,
+                       virtuals);
+  const SparseMatrix p = prolongation_matrix(m, virtuals);
+  expect_agreement(p, "prolongation");
+  const Points all = p * m.points();
+  EXPECT_LT((all.middleRows(m.n_vertices(), m.n_faces()) - virtuals.face_points).norm(), 1e-13);
+  EXPECT_LT((all.bottomRows(m.n_cells()) - virtuals.cell_points).norm(), 1e-13);
+}
+
+TEST_P(VolumeReference, diamond) { expect_diamond(VirtualPoint::AreaMinimizer, "diamond"); }
+
+TEST_P(VolumeReference, diamond_with_centroids) {
+  expect_diamond(VirtualPoint::Centroid, "diamond_centroid");
+}
+
+TEST_P(VolumeReference, bunge) { expect_bunge(VirtualPoint::AreaMinimizer, "bunge"); }
+
+TEST_P(VolumeReference, bunge_with_centroids) {
+  expect_bunge(VirtualPoint::Centroid, "bunge_centroid");
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, VolumeReference,
+                         testing::Values("tet_cube", "hex_cube", "pyr_cube", "prism_cube",
+                                         "poly_cube"),
+                         [](const auto& test) { return std::string(test.param); });
+
+class TetReference : public VolumeReference {};
+
+TEST_P(TetReference, cotan) {
+  expect_agreement(discretize(mesh(), "primal").stiffness, "cotan_stiffness");
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, TetReference, testing::Values("tet_cube"),
+                         [](const auto& test) { return std::string(test.param); });
+
+}  // namespace
+}  // namespace carat
