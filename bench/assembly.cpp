@@ -5,9 +5,6 @@
 //   size
 
 #include <benchmark/benchmark.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -16,6 +13,7 @@
 
 #include "carat/operators/registry.h"
 #include "grids.h"
+#include "measure.h"
 #include "triplet_baseline.h"
 
 namespace carat::bench {
@@ -48,10 +46,6 @@ const PolygonMesh& mesh_of(const std::string& kind) {
 
 /// The same mesh without its derived connectivity, so that the symbolic phase pays for that too.
 PolygonMesh bare_copy(const PolygonMesh& mesh) { return PolygonMesh(mesh.points(), mesh.faces()); }
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void baseline(benchmark::State& state, const std::string& kind) {
   const PolygonMesh& mesh = mesh_of(kind);
@@ -107,48 +101,6 @@ void one_shot(benchmark::State& state, const std::string& kind) {
     state.SetIterationTime(now() - start);
   }
 }
-
-void stream_triad(benchmark::State& state) {
-  constexpr std::size_t n = 20000000;
-  static Array<double> a(n, 0.0), b(n, 1.0), c(n, 2.0);
-  for (auto _ : state) {
-    for (std::size_t i = 0; i < n; ++i) a[i] = b[i] + 3.0 * c[i];
-    benchmark::DoNotOptimize(a.data());
-    benchmark::ClobberMemory();
-  }
-  state.counters["GB/s"] =
-      benchmark::Counter(24e-9 * n, benchmark::Counter::kIsIterationInvariantRate);
-}
-
-/// Peak memory of `work` in a process of its own, above that of the mesh alone.  [MB]
-template <class Work>
-double peak_megabytes(const Work& work) {
-  const pid_t child = fork();
-  if (child == 0) {
-    work();
-    std::_Exit(0);
-  }
-  int status = 0;
-  rusage usage{};
-  wait4(child, &status, 0, &usage);
-  return WIFEXITED(status) ? static_cast<double>(usage.ru_maxrss) / 1024 : -1;
-}
-
-/// Keeps the best time of every benchmark, for the table of ratios.
-class BestTimes : public benchmark::ConsoleReporter {
- public:
-  void ReportRuns(const std::vector<Run>& runs) override {
-    ConsoleReporter::ReportRuns(runs);
-    for (const Run& run : runs) {
-      if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
-      const double seconds = run.GetAdjustedRealTime() * 1e-3;
-      const std::string name = run.run_name.function_name + "/" + run.run_name.args;
-      const auto [entry, fresh] = best.emplace(name, seconds);
-      if (!fresh && seconds < entry->second) entry->second = seconds;
-    }
-  }
-  std::map<std::string, double> best;
-};
 
 void print_ratios(const std::map<std::string, double>& best) {
   std::printf("\n%-10s %10s %10s %10s %10s %12s %16s %16s %9s\n", "mesh", "baseline s",
