@@ -21,10 +21,17 @@ struct FormatEntry {
   FileFormat format;
   /// Whether the content tells that it is of this format.
   bool (*recognises)(std::string_view content);
-  SurfaceData (*read)(const FileContent& file);
-  /// Writes to a temporary path; null if the format is only read.
+  MeshData (*read)(const FileContent& file);
+  /// Writes to a temporary path; null if the format has no surfaces or is only read.
   void (*write)(const std::filesystem::path& path, const PolygonMesh& mesh,
-                const MeshFields& fields);
+                const MeshFields& fields) = nullptr;
+  /// The same for volumes.
+  void (*write_volume)(const std::filesystem::path& path, const PolyhedralMesh& mesh,
+                       const MeshFields& fields,
+                       const std::vector<BoundaryPatch>& patches) = nullptr;
+  /// For formats of several files: whether the path names one of this format. Such a path is not
+  /// loaded: `read` gets it without bytes. Null for formats of one file.
+  bool (*takes_path)(const std::filesystem::path& path) = nullptr;
 };
 
 #define CARAT_FORMAT(name) FormatEntry name##_format();

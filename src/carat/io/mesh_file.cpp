@@ -1,20 +1,14 @@
 #include "carat/io/mesh_file.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <exception>
 #include <new>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "carat/base/atomic_file.h"
 #include "carat/base/error.h"
 #include "carat/io/format.h"
+#include "carat/io/load_file.h"
 
 namespace carat {
 namespace {
@@ -64,36 +58,6 @@ const FormatEntry& find_format(const FileContent& file) {
                 "' is a known mesh format; known are " + known_extensions(&FileFormat::reads));
 }
 
-Array<char> load(const fs::path& path) {
-  struct Handle {
-    int value;
-    ~Handle() {
-      if (value >= 0) ::close(value);
-    }
-  };
-  const auto refuse = [](int error) {
-    throw IoError(std::string("cannot be read: ") + std::strerror(error));
-  };
-  // Without O_NONBLOCK a pipe would wait for its writer.
-  const Handle handle{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  struct ::stat status {};
-  if (handle.value < 0 || ::fstat(handle.value, &status) != 0) refuse(errno);
-  if (S_ISDIR(status.st_mode)) throw IoError("is a folder; name a mesh file");
-  if (!S_ISREG(status.st_mode)) throw IoError("is no regular file; copy its content to one");
-  if (status.st_size == 0) throw IoError("is empty; export the mesh again");
-  Array<char> bytes(static_cast<std::size_t>(status.st_size));
-  std::size_t filled = 0;
-  while (filled < bytes.size()) {
-    const ssize_t got = ::read(handle.value, bytes.data() + filled, bytes.size() - filled);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) refuse(errno);
-    if (got == 0) break;
-    filled += static_cast<std::size_t>(got);
-  }
-  bytes.resize(filled);
-  return bytes;
-}
-
 /// Runs `work` and puts the path in front of what it throws.
 template <class Work>
 auto with_path(const fs::path& path, Work&& work) {
@@ -131,6 +95,22 @@ void check_fields(const std::vector<Field>& fields, const char* where, Index n_r
   }
 }
 
+void check_patches(const std::vector<BoundaryPatch>& patches, Index n_faces) {
+  for (const BoundaryPatch& patch : patches)
+    for (const Index f : patch.faces)
+      if (f < 0 || f >= n_faces)
+        throw InvalidOption("patch '" + patch.name + "' has face " + std::to_string(f) +
+                                "; the mesh has faces 0 to " + std::to_string(n_faces - 1),
+                            {f});
+}
+
+[[noreturn]] void refuse_to_write(const fs::path& path, bool FileFormat::*ability) {
+  const bool volume = ability == &FileFormat::writes_volumes;
+  throw IoError(path.string() + ": the extension '" + path.extension().string() +
+                "' is no format in which " + (volume ? "volumes" : "surfaces") +
+                " can be written; use one of " + known_extensions(ability));
+}
+
 }  // namespace
 
 const std::vector<FileFormat>& file_formats() {
@@ -142,9 +122,11 @@ const std::vector<FileFormat>& file_formats() {
   return formats;
 }
 
-SurfaceData read_surface(const fs::path& path) {
+MeshData read_mesh(const fs::path& path) {
   return with_path(path, [&] {
-    const Array<char> bytes = load(path);
+    for (const FormatEntry& entry : entries())
+      if (entry.takes_path != nullptr && entry.takes_path(path)) return entry.read({path, {}});
+    const Array<char> bytes = detail::load_file(path);
     std::string_view content(bytes.data(), bytes.size());
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
@@ -153,18 +135,50 @@ SurfaceData read_surface(const fs::path& path) {
   });
 }
 
+SurfaceData read_surface(const fs::path& path) {
+  MeshData data = read_mesh(path);
+  if (const VolumeData* volume = std::get_if<VolumeData>(&data))
+    throw IoError(path.string() + ": holds a volume mesh (" +
+                  std::to_string(volume->mesh.n_cells()) +
+                  " cells); a surface mesh is needed, use a command for volumes or extract the "
+                  "boundary first");
+  return std::get<SurfaceData>(std::move(data));
+}
+
+VolumeData read_volume(const fs::path& path) {
+  MeshData data = read_mesh(path);
+  if (const SurfaceData* surface = std::get_if<SurfaceData>(&data))
+    throw IoError(path.string() + ": holds a surface mesh (" +
+                  std::to_string(surface->mesh.n_faces()) +
+                  " faces, no volume cells); a volume mesh is needed, use a command for surfaces "
+                  "or fill it with cells first");
+  return std::get<VolumeData>(std::move(data));
+}
+
 void write_surface(const fs::path& path, const PolygonMesh& mesh, const MeshFields& fields) {
   const FormatEntry* entry = find_by_extension(path);
-  if (entry == nullptr || entry->write == nullptr)
-    throw IoError(path.string() + ": the extension '" + path.extension().string() +
-                  "' is no format that can be written; use one of " +
-                  known_extensions(&FileFormat::writes));
+  if (entry == nullptr || entry->write == nullptr) refuse_to_write(path, &FileFormat::writes);
   with_path(path, [&] {
     check_fields(fields.vertex, "vertex", mesh.n_vertices());
     check_fields(fields.face, "face", mesh.n_faces());
   });
   write_atomically(path, [&](const fs::path& temporary) {
     with_path(path, [&] { entry->write(temporary, mesh, fields); });
+  });
+}
+
+void write_volume(const fs::path& path, const PolyhedralMesh& mesh, const MeshFields& fields,
+                  const std::vector<BoundaryPatch>& patches) {
+  const FormatEntry* entry = find_by_extension(path);
+  if (entry == nullptr || entry->write_volume == nullptr)
+    refuse_to_write(path, &FileFormat::writes_volumes);
+  with_path(path, [&] {
+    check_fields(fields.vertex, "vertex", mesh.n_vertices());
+    check_fields(fields.cell, "cell", mesh.n_cells());
+    check_patches(patches, mesh.n_faces());
+  });
+  write_atomically(path, [&](const fs::path& temporary) {
+    with_path(path, [&] { entry->write_volume(temporary, mesh, fields, patches); });
   });
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Reading and writing surface meshes with their fields.
+// Reading and writing surface and volume meshes with their fields.
 
 #include <filesystem>
 #include <string>
@@ -58,23 +58,19 @@ const std::vector<FileFormat>& file_formats();
 /// \throws InvalidMesh  what the file holds is no mesh (see PolygonMesh); message with the path
 SurfaceData read_surface(const std::filesystem::path& path);
 
-/// Reads a volume mesh: OVM, VTU, legacy VTK, an OpenFOAM polyMesh folder (or a case that has one,
-/// or a file in it), Medit, Gmsh. Vertices and cells keep the file's order and number; of files
-/// with cells of lower dimension the 3-D ones are kept.
-/// \throws  as read_surface; a file with no 3-D cell
+/// Reads a volume mesh: OVM, VTU, legacy VTK, Medit, Gmsh, or an OpenFOAM mesh, which is named by
+/// its case folder, the folder polyMesh, a file in that, or a file *.foam in the case. Vertices and
+/// cells keep the file's order and number, faces where the file has them; of files with cells of
+/// several dimensions the 3-D ones are kept.
+/// \throws  as read_surface; a file without 3-D cells
 VolumeData read_volume(const std::filesystem::path& path);
 
 /// Reads what the file holds: a volume if it has 3-D cells, else a surface.
 MeshData read_mesh(const std::filesystem::path& path);
 
-/// Writes a volume mesh with the fields and patches that the format has. Otherwise as
-/// write_surface.
-void write_volume(const std::filesystem::path& path, const PolyhedralMesh& mesh,
-                  const MeshFields& fields = {}, const std::vector<BoundaryPatch>& patches = {});
-
 /// Writes a surface mesh, with the fields where the format has them (OBJ, OFF: the mesh alone).
 /// Every double comes back bit by bit. Characters that a field's name cannot have in the format
-/// (blanks in PLY, <>&"' in VTP and VTU) become '_'.
+/// (blanks in PLY, <>&"' in VTP and VTU, " in OVM) become '_'.
 /// The format is found from the extension. The file appears under its name only when it is
 /// complete: on failure an existing one is untouched.
 /// \throws IoError        unknown extension, or the file cannot be written
@@ -82,5 +78,12 @@ void write_volume(const std::filesystem::path& path, const PolyhedralMesh& mesh,
 ///                        with the name of another one
 void write_surface(const std::filesystem::path& path, const PolygonMesh& mesh,
                    const MeshFields& fields = {});
+
+/// Writes a volume mesh with its fields of vertices and cells. Otherwise as write_surface.
+/// VTU: tetrahedra, hexahedra, wedges and pyramids as such, all other cells as polyhedra; without
+/// the patches. OVM: patches as face properties of type bool.
+/// \throws  as write_surface; InvalidOption also for a patch with a face that does not exist
+void write_volume(const std::filesystem::path& path, const PolyhedralMesh& mesh,
+                  const MeshFields& fields = {}, const std::vector<BoundaryPatch>& patches = {});
 
 }  // namespace carat

@@ -67,7 +67,7 @@ void check_vertices_exist(const FaceCollector& faces, std::int64_t n_vertices,
                           {f});
 }
 
-SurfaceData read_obj(const FileContent& file) {
+MeshData read_obj(const FileContent& file) {
   Scanner scanner(file.bytes, kSyntax);
   Array<double> coordinates;
   FaceCollector faces;
@@ -84,7 +84,7 @@ SurfaceData read_obj(const FileContent& file) {
   const auto n_vertices = static_cast<std::int64_t>(coordinates.size() / 3);
   check_vertices_exist(faces, n_vertices, file.bytes);
   Points points = Eigen::Map<const Points>(coordinates.data(), n_vertices, 3);
-  return {faces.build(std::move(points), file.bytes), {}};
+  return SurfaceData{faces.build(std::move(points), file.bytes), {}};
 }
 
 void write_obj(const std::filesystem::path& path, const PolygonMesh& mesh, const MeshFields&) {

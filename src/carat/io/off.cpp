@@ -118,7 +118,7 @@ SurfaceData read_binary(Scanner& scanner, const Header& header) {
   return {faces.build(std::move(points)), {}};
 }
 
-SurfaceData read_off(const FileContent& file) {
+MeshData read_off(const FileContent& file) {
   Scanner scanner(file.bytes, kSyntax);
   const Header header = read_header(scanner);
   return scanner.encoding() == Encoding::Text ? read_text(scanner, header, file.bytes)

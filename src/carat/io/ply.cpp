@@ -200,7 +200,7 @@ void skip_element(Scanner& scanner, const PlyElement& element) {
       }
 }
 
-SurfaceData read_ply(const FileContent& file) {
+MeshData read_ply(const FileContent& file) {
   Scanner scanner(file.bytes);
   const std::vector<PlyElement> elements = read_ply_header(scanner);
   const auto has = [&](std::string_view name) {
@@ -224,7 +224,7 @@ SurfaceData read_ply(const FileContent& file) {
       skip_element(scanner, element);
     }
   }
-  return {faces.build(std::move(points), file.bytes), std::move(fields)};
+  return SurfaceData{faces.build(std::move(points), file.bytes), std::move(fields)};
 }
 
 /// Property names for all components of all fields: without blanks, and none of them twice.

@@ -137,7 +137,7 @@ Array<Index> weld(const Array<double>& coordinates, Array<Index>& firsts) {
   return vertex_of;
 }
 
-SurfaceData read_stl(const FileContent& file) {
+MeshData read_stl(const FileContent& file) {
   FaceCollector faces;
   Array<std::size_t> positions;
   const Array<double> coordinates = is_binary(file.bytes) || !is_text(file.bytes)
@@ -162,7 +162,7 @@ SurfaceData read_stl(const FileContent& file) {
       faces.end_face(positions[c / 3]);
     }
   }
-  return {faces.build(std::move(points), file.bytes), {}};
+  return SurfaceData{faces.build(std::move(points), file.bytes), {}};
 }
 
 }  // namespace

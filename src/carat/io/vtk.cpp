@@ -1,5 +1,5 @@
-// Legacy VTK files, text and binary: POLYDATA and UNSTRUCTURED_GRID. The library VTK is not used
-// here: its readers trust the sizes and cell lengths that a damaged file gives them.
+// Legacy VTK files, text and binary. The library VTK is not used here: its readers trust the sizes
+// and cell lengths that a damaged file gives them.
 
 #include <vtkCellType.h>
 
@@ -13,6 +13,7 @@
 #include "carat/io/scanner.h"
 #include "carat/io/vtk_attributes.h"
 #include "carat/io/vtk_cells.h"
+#include "carat/io/vtk_lattice.h"
 
 namespace carat::detail {
 namespace {
@@ -27,12 +28,15 @@ struct CellList {
   }
 };
 
+enum class DataSet { Polygons, Cells, RegularLattice, Grid, RectilinearLattice };
+
 struct Geometry {
-  bool unstructured = false;
+  DataSet kind = DataSet::Polygons;
   Points points;
   CellList vertices, lines, polygons, strips;  ///< of POLYDATA
   CellList cells;                              ///< of UNSTRUCTURED_GRID
   std::vector<int> cell_types;
+  VtkLattice lattice;  ///< of the structured kinds
 };
 
 bool recognises_vtk(std::string_view content) { return content.starts_with("# vtk DataFile"); }
@@ -133,6 +137,15 @@ std::string read_geometry(Scanner& scanner, int version, Geometry& geometry) {
       geometry.cells = read_cells(scanner, version);
     } else if (keyword == "CELL_TYPES") {
       geometry.cell_types = read_cell_types(scanner);
+    } else if (keyword == "DIMENSIONS") {
+      geometry.lattice.read_dimensions(scanner);
+    } else if (keyword == "ORIGIN") {
+      geometry.lattice.origin = VtkLattice::read_triple(scanner);
+    } else if (keyword == "SPACING" || keyword == "ASPECT_RATIO") {
+      geometry.lattice.spacing = VtkLattice::read_triple(scanner);
+    } else if (keyword == "X_COORDINATES" || keyword == "Y_COORDINATES" ||
+               keyword == "Z_COORDINATES") {
+      geometry.lattice.read_coordinates(scanner, static_cast<std::size_t>(keyword[0] - 'X'));
     } else if (keyword == "FIELD") {
       skip_vtk_field_data(scanner);
     } else if (keyword == "METADATA") {
@@ -146,49 +159,88 @@ std::string read_geometry(Scanner& scanner, int version, Geometry& geometry) {
   return {};
 }
 
-VtkCellFaces collect_faces(const Geometry& geometry) {
-  VtkCellFaces result;
-  const auto n_points = static_cast<std::int64_t>(geometry.points.rows());
+/// Sets the points of a structured data set from what describes them.
+void set_lattice_points(Geometry& geometry) {
+  const VtkLattice& lattice = geometry.lattice;
+  if (lattice.size() == 0) throw IoError("DIMENSIONS is missing; the file is damaged");
+  if (geometry.kind == DataSet::RegularLattice) geometry.points = lattice.regular_points();
+  if (geometry.kind == DataSet::RectilinearLattice) geometry.points = lattice.rectilinear_points();
+  if (geometry.points.rows() != lattice.size())
+    throw IoError(std::to_string(geometry.points.rows()) + " points, but DIMENSIONS says " +
+                  std::to_string(lattice.size()) + "; the file is truncated or damaged");
+}
+
+void add_polygons(VtkCells& cells, const Geometry& geometry) {
   const auto add_all = [&](const CellList& list, int type) {
-    for (std::size_t i = 0; i < list.size(); ++i) result.add_cell(type, list.cell(i), n_points);
+    for (std::size_t i = 0; i < list.size(); ++i)
+      cells.add_cell(type, list.cell(i), geometry.points.rows());
   };
-  if (!geometry.unstructured) {
-    add_all(geometry.vertices, VTK_POLY_VERTEX);
-    add_all(geometry.lines, VTK_POLY_LINE);
-    add_all(geometry.polygons, VTK_POLYGON);
-    add_all(geometry.strips, VTK_TRIANGLE_STRIP);
-    return result;
-  }
+  add_all(geometry.vertices, VTK_POLY_VERTEX);
+  add_all(geometry.lines, VTK_POLY_LINE);
+  add_all(geometry.polygons, VTK_POLYGON);
+  add_all(geometry.strips, VTK_TRIANGLE_STRIP);
+}
+
+void add_unstructured_cells(VtkCells& cells, const Geometry& geometry) {
   if (geometry.cell_types.size() != geometry.cells.size())
     throw IoError(std::to_string(geometry.cells.size()) + " cells but " +
                   std::to_string(geometry.cell_types.size()) +
                   " cell types; the file is truncated or damaged");
-  for (std::size_t i = 0; i < geometry.cells.size(); ++i)
-    result.add_cell(geometry.cell_types[i], geometry.cells.cell(i), n_points);
-  return result;
+  for (std::size_t i = 0; i < geometry.cells.size(); ++i) {
+    if (geometry.cell_types[i] == VTK_POLYHEDRON) {
+      cells.add_polyhedron(geometry.cells.cell(i), geometry.points.rows());
+    } else {
+      cells.add_cell(geometry.cell_types[i], geometry.cells.cell(i), geometry.points.rows());
+    }
+  }
 }
 
-MeshFields read_fields(Scanner& scanner, std::string section, const Geometry& geometry,
-                       const VtkCellFaces& faces) {
-  MeshFields fields;
+VtkCells collect_cells(Geometry& geometry) {
+  VtkCells cells;
+  if (geometry.kind == DataSet::Polygons) {
+    add_polygons(cells, geometry);
+  } else if (geometry.kind == DataSet::Cells) {
+    add_unstructured_cells(cells, geometry);
+  } else {
+    set_lattice_points(geometry);
+    geometry.lattice.add_cells(cells);
+  }
+  return cells;
+}
+
+struct Attributes {
+  std::vector<Field> vertex, cell;
+};
+
+Attributes read_attributes(Scanner& scanner, std::string section, std::int64_t n_points,
+                           std::int64_t n_cells) {
+  Attributes attributes;
   while (!section.empty()) {
     const bool of_points = section == "POINT_DATA";
-    const std::int64_t expected = of_points ? geometry.points.rows() : faces.n_cells();
+    const std::int64_t expected = of_points ? n_points : n_cells;
     const std::int64_t n = scanner.integer();
     if (n != expected)
       scanner.fail(section + " for " + std::to_string(n) + " elements, the mesh has " +
                    std::to_string(expected) + "; the file is damaged");
     std::vector<Field> read;
     section = read_vtk_attributes(scanner, n, read);
-    for (Field& field : read) {
-      if (of_points) {
-        add_field(fields.vertex, std::move(field));
-      } else {
-        add_field(fields.face, faces.select_rows(std::move(field)));
-      }
-    }
+    for (Field& field : read)
+      add_field(of_points ? attributes.vertex : attributes.cell, std::move(field));
   }
-  return fields;
+  return attributes;
+}
+
+DataSet read_data_set(Scanner& scanner) {
+  if (!scanner.to_content() || upper_case(scanner.word()) != "DATASET")
+    scanner.fail("the line DATASET is missing; the file is damaged");
+  const std::string name = upper_case(scanner.word());
+  if (name == "POLYDATA") return DataSet::Polygons;
+  if (name == "UNSTRUCTURED_GRID") return DataSet::Cells;
+  if (name == "STRUCTURED_POINTS") return DataSet::RegularLattice;
+  if (name == "STRUCTURED_GRID") return DataSet::Grid;
+  if (name == "RECTILINEAR_GRID") return DataSet::RectilinearLattice;
+  throw IoError("holds a data set " + in_quotes(name) +
+                "; POLYDATA, UNSTRUCTURED_GRID or a structured one is needed");
 }
 
 /// Reads "# vtk DataFile Version 4.2" and the title; returns the major version.
@@ -202,7 +254,7 @@ int read_version(Scanner& scanner) {
   return static_cast<int>(version);
 }
 
-SurfaceData read_vtk(const FileContent& file) {
+MeshData read_vtk(const FileContent& file) {
   Scanner scanner(file.bytes);
   if (!recognises_vtk(file.bytes)) scanner.fail("does not start with '# vtk DataFile'");
   const int version = read_version(scanner);
@@ -211,24 +263,22 @@ SurfaceData read_vtk(const FileContent& file) {
     scanner.fail("neither ASCII nor BINARY; the file is damaged");
   scanner.skip_line();
   if (encoding == "BINARY") scanner.set_encoding(Encoding::BigEndian);
-  if (!scanner.to_content() || upper_case(scanner.word()) != "DATASET")
-    scanner.fail("the line DATASET is missing; the file is damaged");
-  const std::string dataset = upper_case(scanner.word());
-  if (dataset != "POLYDATA" && dataset != "UNSTRUCTURED_GRID")
-    throw IoError("holds a data set " + in_quotes(dataset) +
-                  "; POLYDATA or UNSTRUCTURED_GRID is needed, extract the surface first");
   Geometry geometry;
-  geometry.unstructured = dataset == "UNSTRUCTURED_GRID";
+  geometry.kind = read_data_set(scanner);
   std::string section = read_geometry(scanner, version, geometry);
-  VtkCellFaces faces = collect_faces(geometry);
-  MeshFields fields = read_fields(scanner, std::move(section), geometry, faces);
-  return {faces.faces().build(std::move(geometry.points)), std::move(fields)};
+  VtkCells cells = collect_cells(geometry);
+  Attributes attributes =
+      read_attributes(scanner, std::move(section), geometry.points.rows(), cells.n_cells());
+  return cells.build(std::move(geometry.points), std::move(attributes.vertex),
+                     std::move(attributes.cell));
 }
 
 }  // namespace
 
 FormatEntry vtk_format() {
-  return {{"vtk", "VTK legacy", {".vtk"}, true, false, true}, recognises_vtk, read_vtk, nullptr};
+  return {.format = {"vtk", "VTK legacy", {".vtk"}, true, false, true, true, false},
+          .recognises = recognises_vtk,
+          .read = read_vtk};
 }
 
 }  // namespace carat::detail

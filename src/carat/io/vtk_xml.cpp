@@ -108,8 +108,9 @@ void run_vtk_reader(vtkXMLReader* reader, const FileContent& file) {
   reader->Update();
 }
 
-void add_cells(VtkCellFaces& faces, vtkCellArray* cells, vtkIdType n_points, int type,
-               const unsigned char* types) {
+void for_each_cell(
+    vtkCellArray* cells,
+    const std::function<void(std::int64_t cell, std::span<const std::int64_t> points)>& visit) {
   if (cells == nullptr) return;
   if (!cells->IsValid())
     throw IoError("the cell offsets do not fit the connectivity; the file is damaged");
@@ -119,25 +120,26 @@ void add_cells(VtkCellFaces& faces, vtkCellArray* cells, vtkIdType n_points, int
     const vtkIdType* first = nullptr;
     cells->GetCellAtId(i, n, first);
     points.assign(first, first + n);
-    faces.add_cell(types == nullptr ? type : types[i], points, n_points);
+    visit(i, points);
   }
 }
 
-SurfaceData to_surface(vtkPointSet* data, VtkCellFaces& faces) {
+MeshData to_mesh(vtkPointSet* data, VtkCells& cells) {
   Points points = to_points(data->GetPoints());
-  MeshFields fields{to_fields(data->GetPointData(), points.rows(), "point"),
-                    to_fields(data->GetCellData(), faces.n_cells(), "cell")};
-  for (Field& field : fields.face) field = faces.select_rows(std::move(field));
-  return {faces.faces().build(std::move(points)), std::move(fields)};
+  std::vector<Field> vertex_fields = to_fields(data->GetPointData(), points.rows(), "point");
+  std::vector<Field> cell_fields = to_fields(data->GetCellData(), cells.n_cells(), "cell");
+  return cells.build(std::move(points), std::move(vertex_fields), std::move(cell_fields));
 }
 
-void share_points_and_fields(vtkPointSet* data, const PolygonMesh& mesh, const MeshFields& fields) {
+void share_points_and_fields(vtkPointSet* data, const Points& positions,
+                             const std::vector<Field>& vertex_fields,
+                             const std::vector<Field>& cell_fields) {
   vtkNew<vtkPoints> points;
-  points->SetData(share<vtkDoubleArray>(mesh.points().data(),
-                                        static_cast<std::size_t>(mesh.points().size()), 3));
+  points->SetData(
+      share<vtkDoubleArray>(positions.data(), static_cast<std::size_t>(positions.size()), 3));
   data->SetPoints(points);
-  share_fields(data->GetPointData(), fields.vertex);
-  share_fields(data->GetCellData(), fields.face);
+  share_fields(data->GetPointData(), vertex_fields);
+  share_fields(data->GetCellData(), cell_fields);
 }
 
 vtkSmartPointer<vtkCellArray> share_faces(const PolygonMesh& mesh) {

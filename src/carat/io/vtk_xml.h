@@ -3,8 +3,12 @@
 
 #include <vtkSmartPointer.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "carat/base/error.h"
 #include "carat/io/format.h"
@@ -22,6 +26,9 @@ class VtkSession;
 
 /// The attribute `type` of the element VTKFile; "" if the content is no such file.
 std::string_view vtk_file_type(std::string_view content);
+
+/// No array of the file can have more values: its size, times the best ratio of the compressors.
+std::int64_t most_vtk_values(std::string_view content);
 
 /// Refuses, from the XML elements alone, a file of another type and sizes which the file cannot
 /// hold. The readers of VTK would allocate them.
@@ -43,25 +50,27 @@ class VtkXmlReader : public Reader {
 /// Runs the reader in silence; see VtkXmlReader::failed for how it went.
 void run_vtk_reader(vtkXMLReader* reader, const FileContent& file);
 
-/// Runs the reader.
-/// \throws IoError  if it fails
+/// \throws IoError  if the reader, which has run, failed
 template <class Reader>
-void run_vtk_reader(VtkXmlReader<Reader>* reader, const FileContent& file) {
-  run_vtk_reader(static_cast<vtkXMLReader*>(reader), file);
-  if (reader->failed())
+void check_vtk_reader(const VtkXmlReader<Reader>& reader) {
+  if (reader.failed())
     throw IoError(
         "an array of it cannot be read; the file is truncated or damaged, export it again");
 }
 
-/// Adds all cells of a list, as cells of one type or of types[i].
-void add_cells(VtkCellFaces& faces, vtkCellArray* cells, vtkIdType n_points, int type,
-               const unsigned char* types = nullptr);
+/// Calls visit(i, points) for the cells of a list, which may be null.
+/// \throws IoError  offsets that do not fit the points
+void for_each_cell(
+    vtkCellArray* cells,
+    const std::function<void(std::int64_t cell, std::span<const std::int64_t> points)>& visit);
 
-/// The mesh of these faces with the data set's points and attributes.
-SurfaceData to_surface(vtkPointSet* data, VtkCellFaces& faces);
+/// The mesh of these cells with the data set's points and attributes.
+MeshData to_mesh(vtkPointSet* data, VtkCells& cells);
 
-/// Sets points and attributes. The arrays are shared, not copied: the mesh must outlive them.
-void share_points_and_fields(vtkPointSet* data, const PolygonMesh& mesh, const MeshFields& fields);
+/// Sets points and attributes. The arrays are shared, not copied: they must outlive the data set.
+void share_points_and_fields(vtkPointSet* data, const Points& points,
+                             const std::vector<Field>& vertex_fields,
+                             const std::vector<Field>& cell_fields);
 
 /// The mesh's faces as cells, shared, not copied.
 vtkSmartPointer<vtkCellArray> share_faces(const PolygonMesh& mesh);

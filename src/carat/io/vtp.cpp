@@ -19,26 +19,32 @@ bool recognises_vtp(std::string_view content) {
   return !type.empty() && type != "UnstructuredGrid";
 }
 
-SurfaceData read_vtp(const FileContent& file) {
+MeshData read_vtp(const FileContent& file) {
   VtkSession session;
   check_vtk_xml(file, "PolyData", session);
   vtkNew<VtkXmlReader<vtkXMLPolyDataReader>> reader;
   run_vtk_reader(reader.Get(), file);
+  check_vtk_reader(*reader);
   vtkPolyData* const data = reader->GetOutput();
   const vtkIdType n_points = data->GetNumberOfPoints();
-  VtkCellFaces faces;
-  add_cells(faces, data->GetVerts(), n_points, VTK_POLY_VERTEX);
-  add_cells(faces, data->GetLines(), n_points, VTK_POLY_LINE);
-  add_cells(faces, data->GetPolys(), n_points, VTK_POLYGON);
-  add_cells(faces, data->GetStrips(), n_points, VTK_TRIANGLE_STRIP);
-  return to_surface(data, faces);
+  VtkCells cells;
+  const auto add_all = [&](vtkCellArray* list, int type) {
+    for_each_cell(list, [&](std::int64_t, std::span<const std::int64_t> points) {
+      cells.add_cell(type, points, n_points);
+    });
+  };
+  add_all(data->GetVerts(), VTK_POLY_VERTEX);
+  add_all(data->GetLines(), VTK_POLY_LINE);
+  add_all(data->GetPolys(), VTK_POLYGON);
+  add_all(data->GetStrips(), VTK_TRIANGLE_STRIP);
+  return to_mesh(data, cells);
 }
 
 void write_vtp(const std::filesystem::path& path, const PolygonMesh& mesh,
                const MeshFields& fields) {
   VtkSession session;
   vtkNew<vtkPolyData> data;
-  share_points_and_fields(data, mesh, fields);
+  share_points_and_fields(data, mesh.points(), fields.vertex, fields.face);
   data->SetPolys(share_faces(mesh));
   vtkNew<vtkXMLPolyDataWriter> writer;
   run_vtk_writer(writer, data, path, session);
