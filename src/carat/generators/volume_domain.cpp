@@ -58,15 +58,32 @@ Vec3 displace_in_ball(const Vec3& x, const Vec3& offset, bool on_border) {
 
 }  // namespace
 
-const VolumeDomain kCube{false, place_in_cube, squeeze_cube, displace_in_cube, 0};
-const VolumeDomain kBall{true, place_in_ball, squeeze_ball, displace_in_ball, 0.5};
+const VolumeDomain kCube{false, 1, place_in_cube, squeeze_cube, displace_in_cube, 0};
+const VolumeDomain kBall{
+    true, std::cbrt(4 * std::numbers::pi / 3), place_in_ball, squeeze_ball, displace_in_ball, 0.5};
+
+Points squeeze_points(const VolumeDomain& domain, const Points& points, double anisotropy) {
+  if (anisotropy == 1) return points;
+  Points squeezed(points.rows(), 3);
+  for (Eigen::Index v = 0; v < points.rows(); ++v)
+    squeezed.row(v) = domain.squeeze(points.row(v).transpose(), anisotropy).transpose();
+  return squeezed;
+}
 
 Points place_points(const VolumeDomain& domain, const Points& cube_points, double anisotropy) {
   Points points(cube_points.rows(), 3);
-  for (Eigen::Index v = 0; v < points.rows(); ++v) {
-    const Vec3 x = domain.place(cube_points.row(v).transpose());
-    points.row(v) = (anisotropy == 1 ? x : domain.squeeze(x, anisotropy)).transpose();
-  }
+  for (Eigen::Index v = 0; v < points.rows(); ++v)
+    points.row(v) = domain.place(cube_points.row(v).transpose()).transpose();
+  return squeeze_points(domain, points, anisotropy);
+}
+
+Points place_lattice_and_centres(const VolumeDomain& domain, const CubeLattice& lattice,
+                                 double anisotropy) {
+  // The image of a cube's centre is not good enough where the cube is flattened.
+  Points points = place_points(domain, lattice.points(), anisotropy);
+  const Points centres = cell_points(hexahedra(lattice, points));
+  points.conservativeResize(lattice.n_points() + lattice.n_cells(), 3);
+  points.bottomRows(lattice.n_cells()) = centres;
   return points;
 }
 

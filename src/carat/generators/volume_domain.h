@@ -2,7 +2,10 @@
 // The unit cube and the unit ball: placing, drawing together and displacing the vertices of volume
 // meshes.
 
+#include <vector>
+
 #include "carat/generators/families.h"
+#include "carat/generators/volume_lattice.h"
 #include "carat/mesh/polyhedral_mesh.h"
 
 namespace carat {
@@ -10,6 +13,7 @@ namespace carat {
 /// Where the vertices of a family of volume meshes lie.
 struct VolumeDomain {
   bool is_ball;
+  double size;  ///< edge of a cube of its volume
   /// Image of a point of the unit cube, of its border on the border.
   Vec3 (*place)(const Vec3& x);
   /// Draws points of the domain together; 1: not at all.
@@ -30,8 +34,15 @@ extern const VolumeDomain kCube;
 /// squeeze() maps the sphere as squeeze_sphere does.
 extern const VolumeDomain kBall;
 
+/// squeeze() of all points of the domain.
+Points squeeze_points(const VolumeDomain& domain, const Points& points, double anisotropy);
+
 /// place() and squeeze() of all points of the unit cube.
 Points place_points(const VolumeDomain& domain, const Points& cube_points, double anisotropy);
+
+/// The points of a lattice in the domain, then points well inside of its cubes.
+Points place_lattice_and_centres(const VolumeDomain& domain, const CubeLattice& lattice,
+                                 double anisotropy);
 
 /// Moves every vertex to a random place within `jitter` times its shortest edge.
 ///
@@ -40,8 +51,11 @@ Points place_points(const VolumeDomain& domain, const Points& cube_points, doubl
 PolyhedralMesh jitter_cells(const PolyhedralMesh& mesh, const VolumeDomain& domain, double jitter,
                             std::uint64_t seed);
 
-/// A cell with a virtual tetrahedron that is not positive, or -1.
-Index find_inverted_cell(const PolyhedralMesh& mesh);
+/// The points of the cells that have the least sum of squared virtual tetrahedra.
+Points cell_points(const PolyhedralMesh& mesh);
+
+/// Cells with a virtual tetrahedron that is not positive.
+std::vector<Index> inverted_cells(const PolyhedralMesh& mesh);
 
 /// The mesh of a family, jittered as the options say.
 /// \throws InvalidOption  the anisotropy inverts cells

@@ -33,11 +33,15 @@ class VirtualVolumes {
       normal_matrix += t.area * t.area.transpose();
       right_side += t.area * t.area.dot(t.point - origin);
     }
-    const Vec3 cell_point = origin + normal_matrix.ldlt().solve(right_side);
+    point_ = origin + normal_matrix.ldlt().solve(right_side);
     volumes_.clear();
-    for (const Triangle& t : triangles_) volumes_.push_back(t.area.dot(t.point - cell_point));
+    for (const Triangle& t : triangles_) volumes_.push_back(t.area.dot(t.point - point_));
     return volumes_;
   }
+  /// The virtual vertex of the last cell.
+  const Vec3& point() const { return point_; }
+  /// Whether no face of the last cell had its virtual vertex moved to keep its triangles unflipped.
+  bool is_regular() const { return regular_; }
 
  private:
   struct Triangle {
@@ -47,11 +51,14 @@ class VirtualVolumes {
 
   void add_triangles(const Points& points, Index c) {
     triangles_.clear();
+    regular_ = true;
     for (const Index f : mesh_.cell(c)) {
       const auto face = mesh_.face(f);
       weights_.resize(face.size());
       parts_.resize(face.size());
-      kernel_.compute(points, face, weights_.data(), parts_.data());
+      regular_ = kernel_.compute(points, face, weights_.data(), parts_.data()) ==
+                     VirtualVertexStatus::Regular &&
+                 regular_;
       const Vec3 centre = kernel_.point();
       const double sign = mesh_.face_cells()[f].below == c ? 1 : -1;
       Vec3 previous = Vec3(points.row(face.back()).transpose()) - centre;
@@ -68,6 +75,8 @@ class VirtualVolumes {
   std::vector<double> weights_, volumes_;
   std::vector<VirtualTriangle> parts_;
   std::vector<Triangle> triangles_;
+  Vec3 point_;
+  bool regular_ = true;
 };
 
 Vector shortest_edges(const PolyhedralMesh& mesh) {
@@ -87,6 +96,7 @@ class CellCheck {
   bool is_sound(const Points& moved, Index c) {
     const std::vector<double>& before = before_.compute(mesh_.points(), c);
     const std::vector<double>& after = after_.compute(moved, c);
+    if (before_.is_regular() && !after_.is_regular()) return false;
     for (std::size_t t = 0; t < before.size(); ++t)
       // An unmoved cell is always sound, so that the halving ends.
       if (!(after[t] >= std::min(kLeastVolume * before[t], before[t]))) return false;
@@ -141,20 +151,34 @@ PolyhedralMesh jitter_cells(const PolyhedralMesh& mesh, const VolumeDomain& doma
   return mesh.with_points(std::move(moved));
 }
 
-Index find_inverted_cell(const PolyhedralMesh& mesh) {
+Points cell_points(const PolyhedralMesh& mesh) {
   VirtualVolumes volumes(mesh);
-  for (Index c = 0; c < mesh.n_cells(); ++c)
-    for (const double volume : volumes.compute(mesh.points(), c))
-      if (!(volume > 0)) return c;
-  return -1;
+  Points points(mesh.n_cells(), 3);
+  for (Index c = 0; c < mesh.n_cells(); ++c) {
+    volumes.compute(mesh.points(), c);
+    points.row(c) = volumes.point().transpose();
+  }
+  return points;
+}
+
+std::vector<Index> inverted_cells(const PolyhedralMesh& mesh) {
+  VirtualVolumes volumes(mesh);
+  std::vector<Index> cells;
+  for (Index c = 0; c < mesh.n_cells(); ++c) {
+    const std::vector<double>& all = volumes.compute(mesh.points(), c);
+    // Written so that a NaN is found.
+    if (!std::all_of(all.begin(), all.end(), [](double volume) { return volume > 0; }))
+      cells.push_back(c);
+  }
+  return cells;
 }
 
 PolyhedralMesh finish_volume(const PolyhedralMesh& mesh, const VolumeDomain& domain,
                              const FamilyOptions& options) {
   if (options.anisotropy != 1)
-    if (const Index c = find_inverted_cell(mesh); c >= 0)
+    if (const std::vector<Index> inverted = inverted_cells(mesh); !inverted.empty())
       throw InvalidOption("anisotropy " + std::to_string(options.anisotropy) + ": cell " +
-                          std::to_string(c) +
+                          std::to_string(inverted.front()) +
                           " would be inverted; choose a smaller one, or a higher level");
   return jitter_cells(mesh, domain, options.jitter, options.seed);
 }

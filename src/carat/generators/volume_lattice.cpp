@@ -37,15 +37,6 @@ Points CubeLattice::points() const {
   return points;
 }
 
-Points CubeLattice::points_and_centres() const {
-  Points points = this->points();
-  points.conservativeResize(n_points() + n_cells(), 3);
-  for_cells([&](Index i, Index j, Index k) {
-    points.row(n_points() + cell(i, j, k)) = at(i + 0.5, j + 0.5, k + 0.5).transpose();
-  });
-  return points;
-}
-
 VolumeBuilder::VolumeBuilder(Points points)
     : points_(std::move(points)),
       ordered_(points_.rows(), 3),

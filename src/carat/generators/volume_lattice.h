@@ -30,8 +30,6 @@ struct CubeLattice {
   bool diagonal_rises(Index i, Index j) const { return (2 * i < n) == (2 * j < n); }
 
   Points points() const;
-  /// The points, then the cells' centres.
-  Points points_and_centres() const;
   Vec3 at(double i, double j, double k) const { return Vec3(i, j, k) / n; }
 
   template <class Visit>

@@ -9,7 +9,7 @@ namespace carat {
 PolyhedralMesh generate_volume_tets(const VolumeDomain& domain, const FamilyOptions& options) {
   const CubeLattice lattice{volume_lattice_size(options.level, 3, 144)};
   const Index n = lattice.n;
-  VolumeBuilder cells(place_points(domain, lattice.points_and_centres(), options.anisotropy));
+  VolumeBuilder cells(place_lattice_and_centres(domain, lattice, options.anisotropy));
   lattice.for_cells([&](Index i, Index j, Index k) {
     const auto hexahedron = lattice.hexahedron(i, j, k);
     const Index centre = lattice.n_points() + lattice.cell(i, j, k);
