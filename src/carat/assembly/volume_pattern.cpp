@@ -1,7 +1,10 @@
 #include "carat/assembly/volume_pattern.h"
 
+#include <string>
+
 #include "carat/assembly/pattern.h"
 #include "carat/assembly/row_pattern.h"
+#include "carat/base/error.h"
 
 namespace carat {
 namespace {
@@ -26,9 +29,22 @@ class PlaceFinder {
   Array<Index> cell_, place_;
 };
 
+/// Refuses cells whose vertices alone, each coupled to each, pass 2^31 entries.
+void check_cell_sizes(const VolumeIncidence& mesh) {
+  constexpr Index kMostVertices = 46340;  // the root of 2^31
+  for (Index c = 0; c < mesh.cell_vertices.n_rows(); ++c)
+    if (mesh.cell_vertices.size(c) > kMostVertices)
+      throw InvalidMesh("cell " + std::to_string(c) + " has " +
+                            std::to_string(mesh.cell_vertices.size(c)) +
+                            " vertices, all coupled to each other: at most " +
+                            std::to_string(kMostVertices) + " are supported; split the cell",
+                        {c});
+}
+
 }  // namespace
 
 CellRings cell_rings(const VolumeIncidence& mesh, int threads) {
+  check_cell_sizes(mesh);
   const Index n = mesh.cells.n_rows();
   CellRings rings;
   rings.place_offsets.resize(static_cast<std::size_t>(n) + 1);
@@ -84,6 +100,7 @@ CellRings cell_rings(const VolumeIncidence& mesh, int threads) {
 }
 
 SparseMatrix cell_pattern(const VolumeIncidence& mesh, int threads) {
+  check_cell_sizes(mesh);
   Array<Index> sizes, same;
   const Index n = mesh.n_vertices();
   const std::vector<CollectedRows> rows =

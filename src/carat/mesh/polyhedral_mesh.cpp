@@ -282,22 +282,23 @@ Array<FaceCells> incident_cells(const Csr& cells, Index n_faces) {
 }
 
 /// Puts the cells of every face on their sides. Cells are turned as their neighbours are, and each
-/// connected part so that its volume is positive. Returns the sign of each cell's faces.
-Array<signed char> orient(const Points& points, const Csr& faces, const Csr& cells,
-                          Array<FaceCells>& face_cells) {
+/// connected part so that its volume is positive.
+/// \param face_cells  the cells of every face in any order; receives them on their sides
+void orient(const Points& points, const Csr& faces, const Csr& cells,
+            Array<FaceCells>& face_cells) {
   Array<signed char> sign(cells.indices.size());
+  /// Of every face in its first and second cell.
+  Array<std::array<signed char, 2>> face_signs(face_cells.size());
+  const auto slot = [&](Index c, Index f) { return face_cells[f].below == c ? 0U : 1U; };
   Array<double> volume(static_cast<std::size_t>(cells.n_rows()));
   CellScratch scratch;
   for (Index c = 0; c < cells.n_rows(); ++c) {
     orient_cell(faces, cells.row(c), c, scratch);
     std::copy(scratch.sign.begin(), scratch.sign.end(), sign.begin() + cells.begin(c));
+    for (Index k = cells.begin(c); k < cells.end(c); ++k)
+      face_signs[cells.indices[k]][slot(c, cells.indices[k])] = sign[k];
     volume[c] = six_volumes(points, faces, cells.row(c), scratch.sign.data());
   }
-  const auto sign_of = [&](Index c, Index f) {
-    Index k = cells.begin(c);
-    while (cells.indices[k] != f) ++k;
-    return sign[k];
-  };
   Array<signed char> turn(static_cast<std::size_t>(cells.n_rows()), 0);
   std::vector<Index> part;
   for (Index seed = 0; seed < cells.n_rows(); ++seed) {
@@ -311,14 +312,14 @@ Array<signed char> orient(const Points& points, const Csr& faces, const Csr& cel
       for (Index k = cells.begin(c); k < cells.end(c); ++k) {
         const Index other = face_cells[cells.indices[k]].other(c);
         if (other < 0) continue;
-        const int wanted = -turn[c] * sign[k] * sign_of(other, cells.indices[k]);
+        const Index f = cells.indices[k];
+        const int wanted = -turn[c] * sign[k] * face_signs[f][slot(other, f)];
         if (turn[other] == 0) {
           turn[other] = static_cast<signed char>(wanted);
           part.push_back(other);
         } else if (turn[other] != wanted) {
           throw InvalidMesh("cells " + std::to_string(c) + " and " + std::to_string(other) +
-                                " lie on the same side of face " +
-                                std::to_string(cells.indices[k]) +
+                                " lie on the same side of face " + std::to_string(f) +
                                 "; the cells around them do not fit together, remove one",
                             {c, other});
         }
@@ -330,11 +331,9 @@ Array<signed char> orient(const Points& points, const Csr& faces, const Csr& cel
   for (FaceCells& face : face_cells) face = {-1, -1};
   for (Index c = 0; c < cells.n_rows(); ++c)
     for (Index k = cells.begin(c); k < cells.end(c); ++k) {
-      sign[k] = static_cast<signed char>(sign[k] * turn[c]);
       FaceCells& face = face_cells[cells.indices[k]];
-      (sign[k] > 0 ? face.below : face.above) = c;
+      (sign[k] * turn[c] > 0 ? face.below : face.above) = c;
     }
-  return sign;
 }
 
 PolyhedralMesh from_rows(Points points, const PolyhedralMesh::CellArray& rows, CellType type,
