@@ -80,12 +80,13 @@ std::vector<FileFormat> writable_formats() {
 INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, testing::ValuesIn(writable_formats()),
                          [](const auto& test) { return test.param.name; });
 
-TEST(Formats, AreTheSevenWithTheirAbilities) {
+TEST(Formats, HaveTheirAbilities) {
   std::string table;
   for (const FileFormat& format : file_formats())
     table += format.name + (format.reads ? "r" : "") + (format.writes ? "w" : "") +
+             (format.reads_volumes ? "R" : "") + (format.writes_volumes ? "W" : "") +
              (format.fields ? "f" : "") + " ";
-  EXPECT_EQ(table, "plyrwf offrw stlr vtkrf vtprwf vturwf objrw ");
+  EXPECT_EQ(table, "plyrwf offrw stlr vtkrRf vtprwf vturwRWf ovmrRWf objrw ");
 }
 
 TEST(Formats, KeepNonFiniteFieldValues) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
 #include "carat/mesh/polygon_mesh.h"
 
@@ -27,6 +28,8 @@ class FaceCollector {
   /// Position in the text of a face.
   std::size_t position(Index face) const { return positions_[static_cast<std::size_t>(face)]; }
   const Csr& faces() const { return faces_; }
+  /// The faces alone; leaves the collector empty.
+  Csr take() { return std::exchange(faces_, {}); }
 
   /// The mesh of these faces; leaves the collector empty.
   /// \param text  what the positions refer to

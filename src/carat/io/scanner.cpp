@@ -99,6 +99,14 @@ std::string_view Scanner::word() {
   return {first, static_cast<std::size_t>(at_ - first)};
 }
 
+std::string_view Scanner::rest_of_line() {
+  const char* const first = at_;
+  skip_line();
+  std::string_view line(first, static_cast<std::size_t>(at_ - first));
+  while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
+  return line;
+}
+
 double Scanner::number() {
   if (at_line_end()) fail("a number is missing; the file is truncated or damaged");
   const char* first = at_;

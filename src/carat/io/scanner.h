@@ -51,6 +51,8 @@ class Scanner {
   void skip_line();
   /// The characters up to the next blank or line end, which must lie in this line ("" if none).
   std::string_view word();
+  /// What is left of this line, without its end; leaves the scanner behind the line.
+  std::string_view rest_of_line();
   /// The next number of this line; may be infinite or NaN.
   double number();
   /// The next number of this line, which must be finite.
