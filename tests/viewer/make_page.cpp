@@ -1,5 +1,7 @@
 // make_page FOLDER: the pages that check_page.mjs looks at, and what it should read on them.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -14,13 +16,18 @@
 
 namespace {
 
-using carat::Csr;
+using carat::BoundaryPatch;
+using carat::CellCollector;
+using carat::CellType;
 using carat::Field;
 using carat::Index;
 using carat::Points;
 using carat::PolygonMesh;
+using carat::PolyhedralMesh;
 using carat::SurfaceData;
+using carat::Vec2;
 using carat::Vec3;
+using carat::VolumeData;
 
 /// Far from the origin, so that single precision alone would lose the picked position.
 const Vec3 kShift(1e6, -2e6, 5e5);
@@ -80,6 +87,104 @@ SurfaceData wavy_grid(Index n) {
   return data;
 }
 
+/// Corners of the cube cells of an n^3 lattice over [-1, 1]^3 about the shift.
+Points lattice(Index n) {
+  const Index m = n + 1;
+  Points points(m * m * m, 3);
+  for (Index k = 0; k <= n; ++k)
+    for (Index j = 0; j <= n; ++j)
+      for (Index i = 0; i <= n; ++i)
+        points.row((k * m + j) * m + i) =
+            (Vec3(2.0 * i / n - 1, 2.0 * j / n - 1, 2.0 * k / n - 1) + kShift).transpose();
+  return points;
+}
+
+PolyhedralMesh cubes(Index n) {
+  const Index m = n + 1;
+  CellCollector cells;
+  for (Index k = 0; k < n; ++k)
+    for (Index j = 0; j < n; ++j)
+      for (Index i = 0; i < n; ++i) {
+        const Index v = (k * m + j) * m + i, up = v + m * m;
+        const std::array<Index, 8> corners = {v,  v + 1,  v + m + 1,  v + m,
+                                              up, up + 1, up + m + 1, up + m};
+        cells.add(CellType::Hexahedron, corners);
+      }
+  return std::move(cells).build(lattice(n));
+}
+
+/// Prisms over polygons, one cell each: a hexagon, an L, and a ring with a square hole that is cut
+/// into two cells, so that sections are convex, concave, and in two parts.
+PolyhedralMesh prisms() {
+  std::vector<std::vector<Vec2>> bases(4);
+  for (int i = 0; i < 6; ++i)
+    bases[0].emplace_back(std::cos(i * std::numbers::pi / 3), std::sin(i * std::numbers::pi / 3));
+  bases[1] = {{2, 0}, {4, 0}, {4, 1}, {3, 1}, {3, 2}, {2, 2}};
+  bases[2] = {{5, 0}, {8, 0}, {8, 3}, {7, 3}, {7, 1}, {6, 1}, {6, 3}, {5, 3}};
+  bases[3] = {{6, 3}, {6, 2}, {7, 2}, {7, 3}};
+  std::vector<Vec3> points;
+  CellCollector cells;
+  for (const auto& base : bases) {
+    const Index n = static_cast<Index>(base.size());
+    const Index first = static_cast<Index>(points.size());
+    std::vector<Index> bottom, top;
+    for (const Vec2& p : base) points.emplace_back(p.x(), p.y(), -1);
+    for (const Vec2& p : base) points.emplace_back(p.x(), p.y(), 1);
+    for (Index i = 0; i < n; ++i) {
+      bottom.push_back(first + n - 1 - i);
+      top.push_back(first + n + i);
+    }
+    cells.add_face(bottom);
+    cells.add_face(top);
+    for (Index i = 0; i < n; ++i) {
+      const Index j = (i + 1) % n;
+      cells.add_face(std::array<Index, 4>{first + i, first + j, first + n + j, first + n + i});
+    }
+    cells.end_cell();
+  }
+  Points rows(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t v = 0; v < points.size(); ++v)
+    rows.row(static_cast<Eigen::Index>(v)) = points[v].transpose();
+  return std::move(cells).build(rows);
+}
+
+/// A value that is linear in space, on a lattice of cubes, and one that is constant in each cell.
+VolumeData linear_cubes(Index n) {
+  VolumeData data{cubes(n), {}};
+  Field linear{"linear", 1, {}}, wind{"wind", 3, {}};
+  std::vector<Field> modes;
+  for (int mode = 1; mode <= 3; ++mode) modes.push_back({"mode_" + std::to_string(mode), 1, {}});
+  for (Index v = 0; v < data.mesh.n_vertices(); ++v) {
+    const Vec3 p = data.mesh.point(v) - kShift;
+    linear.values.push_back(1 + 2 * p.x() - 3 * p.y() + 5 * p.z());
+    wind.values.insert(wind.values.end(), {p.y(), -p.x(), 0.2});
+    for (int mode = 1; mode <= 3; ++mode)
+      modes[static_cast<std::size_t>(mode - 1)].values.push_back(std::sin(mode * p.x()));
+  }
+  Field number{"number", 1, {}};
+  for (Index c = 0; c < data.mesh.n_cells(); ++c) number.values.push_back(c);
+  data.fields.vertex = {linear, wind};
+  data.fields.vertex.insert(data.fields.vertex.end(), modes.begin(), modes.end());
+  data.fields.cell = {number};
+  BoundaryPatch floor{"floor", "wall", {}};
+  for (Index f = 0; f < data.mesh.n_faces(); ++f) {
+    double highest = -2;
+    for (const Index v : data.mesh.face(f))
+      highest = std::max(highest, data.mesh.point(v).z() - kShift.z());
+    if (highest < -0.99) floor.faces.push_back(f);
+  }
+  data.patches = {floor};
+  return data;
+}
+
+void write_volumes(const std::filesystem::path& folder) {
+  const VolumeData volume = linear_cubes(4);
+  carat::write_html_view(folder / "volumes.html",
+                         {{"cubes", volume}, {"prisms", VolumeData{prisms(), {}}}}, "Volumes");
+  std::ofstream(folder / "volumes.json")
+      << nlohmann::json{{"shift", {kShift.x(), kShift.y(), kShift.z()}}};
+}
+
 void write_pages(const std::filesystem::path& folder) {
   const Index n = 32;
   const SurfaceData grid = wavy_grid(n);
@@ -106,6 +211,7 @@ int main(int argc, char** argv) {
   try {
     std::filesystem::create_directories(argv[1]);
     write_pages(argv[1]);
+    write_volumes(argv[1]);
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;

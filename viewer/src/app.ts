@@ -1,33 +1,39 @@
+import { Clipping } from './clipping';
 import { Coloring } from './coloring';
-import { Edges } from './edges';
 import { channelsOf, loadField, type Channel } from './fields';
 import { Glyphs } from './glyphs';
 import { fillHelp, listenToKeys, openHelp } from './keys';
 import { Marker } from './marker';
-import { loadMesh, type Mesh } from './mesh';
+import { loadMesh } from './mesh';
 import { MeshChooser } from './meshes';
 import { count, parse } from './numbers';
-import { byId, type FieldInfo, type PageInfo } from './page';
+import { byId, type FieldInfo, type ItemInfo, type PageInfo, type Place } from './page';
 import { hidePicked, showPicked } from './picked';
-import { pickAlong, type Pick } from './picking';
 import { download, takePicture } from './screenshot';
+import type { Pick, Shape } from './shape';
+import { Solid } from './solid';
 import { Surface } from './surface';
 import { onSystemTheme, themeColors, toggleTheme } from './theme';
 import { View, type Axis } from './view';
+import { loadVolume } from './volume';
 
 /** What belongs to the mesh that is shown. */
 interface Shown {
-  mesh: Mesh;
-  surface: Surface;
-  edges: Edges;
+  shape: Shape;
   glyphs: Glyphs | null;
   channels: Channel[];
   vectors: FieldInfo[];
 }
 
+async function loadShape(info: ItemInfo, progress: (fraction: number) => void): Promise<Shape> {
+  if (info.kind === 'volume') return new Solid(await loadVolume(info, progress));
+  return new Surface(await loadMesh(info, progress));
+}
+
 export class App {
   private readonly view: View;
   private readonly coloring: Coloring;
+  private readonly clipping: Clipping;
   private readonly marker: Marker;
   private readonly meshes: MeshChooser;
   private shown: Shown | null = null;
@@ -44,9 +50,10 @@ export class App {
     document.title = page.title;
     byId('title').textContent = page.title;
     this.view = new View(byId<HTMLCanvasElement>('canvas'), (pixelsPerUnit, nearest) =>
-      this.shown?.edges.setScreen(pixelsPerUnit, nearest, this.edgesBox.checked),
+      this.shown?.shape.setScreen(pixelsPerUnit, nearest, this.edgesBox.checked),
     );
     this.coloring = new Coloring(() => this.view.draw());
+    this.clipping = new Clipping(this.view, () => this.followClip());
     this.marker = new Marker(this.view.renderer.getPixelRatio());
     this.view.scene.add(this.marker.object);
     this.meshes = new MeshChooser(page.items, (item) => this.run(this.showMesh(item)));
@@ -66,36 +73,34 @@ export class App {
     const bar = byId<HTMLProgressElement>('progress');
     byId('message-text').textContent = 'Reading the mesh …';
     message.hidden = false;
-    const mesh = await loadMesh(this.page.items[index], (fraction) => (bar.value = fraction));
-    if (index !== this.current) return;
+    const shape = await loadShape(this.page.items[index], (fraction) => (bar.value = fraction));
+    if (index !== this.current) {
+      shape.dispose();
+      return;
+    }
     const lastLabel = this.fieldSelect.selectedOptions[0]?.text;
-    this.replaceShown(mesh);
+    this.replaceShown(shape);
     await this.colorBy(this.firstChannel(lastLabel));
-    this.view.fit(mesh);
-    byId<HTMLSelectElement>('up').value = this.view.up;
+    this.fit();
+    this.clipping.show(shape instanceof Solid ? shape : null);
     message.hidden = true;
     document.documentElement.dataset['state'] = 'ready';
   }
 
-  private replaceShown(mesh: Mesh): void {
+  private replaceShown(shape: Shape): void {
     this.clearPick();
     if (this.shown) {
-      const { surface, edges, glyphs } = this.shown;
-      for (const old of [surface, edges, glyphs])
+      for (const old of [this.shown.shape, this.shown.glyphs])
         if (old) {
           this.view.scene.remove(old.object);
           old.dispose();
         }
     }
-    const surface = new Surface(mesh);
-    const edges = new Edges(mesh);
-    edges.object.renderOrder = 1;
-    this.view.scene.add(surface.object, edges.object);
-    const { fields } = mesh.info;
+    this.view.scene.add(shape.object);
+    this.view.setRadius(shape.radius);
+    const { fields, title } = shape.info;
     this.shown = {
-      mesh,
-      surface,
-      edges,
+      shape,
       glyphs: null,
       channels: channelsOf(fields),
       vectors: fields.filter((field) => field.components === 3),
@@ -103,9 +108,22 @@ export class App {
     this.flatBox.checked = false;
     this.fillSelects(this.shown);
     this.paint();
-    byId('info').textContent =
-      `${mesh.info.title}: ${count(mesh.info.vertices)} vertices, ` +
-      `${count(mesh.info.edges)} edges, ${count(mesh.nFaces)} faces`;
+    byId('info').textContent = `${title}: ${shape.counts()}`;
+  }
+
+  /** After the clip, or the cells' places, changed. */
+  private followClip(): void {
+    if (!this.shown) return;
+    this.view.setRadius(this.shown.shape.radius);
+    this.clipGlyphs(this.shown);
+    if (this.marker.object.visible) this.clearPick();
+    this.view.draw();
+  }
+
+  private clipGlyphs({ shape, glyphs }: Shown): void {
+    if (!glyphs) return;
+    glyphs.setPlane(shape.plane);
+    glyphs.object.visible = !shape.isApart;
   }
 
   private fillSelects({ channels, vectors }: Shown): void {
@@ -116,7 +134,7 @@ export class App {
       element.append(...options);
       return [element];
     };
-    const options = (on: 'vertex' | 'face'): HTMLOptionElement[] =>
+    const options = (on: Place): HTMLOptionElement[] =>
       channels.flatMap((channel, i) =>
         channel.field.on === on ? [new Option(channel.label, String(i))] : [],
       );
@@ -124,6 +142,7 @@ export class App {
       new Option('nothing', '-1'),
       ...group('At vertices', options('vertex')),
       ...group('On faces', options('face')),
+      ...group('In cells', options('cell')),
     );
     this.glyphSelect.replaceChildren(
       new Option('none', '-1'),
@@ -144,7 +163,7 @@ export class App {
   private async colorBy(index: number): Promise<void> {
     if (!this.shown) return;
     this.fieldSelect.value = String(index);
-    await this.coloring.show(this.shown.surface, this.shown.channels[index] ?? null);
+    await this.coloring.show(this.shown.shape, this.shown.channels[index] ?? null);
   }
 
   private async showGlyphs(index: number): Promise<void> {
@@ -158,9 +177,10 @@ export class App {
       shown.glyphs = null;
     }
     if (field && values) {
-      shown.glyphs = new Glyphs(shown.mesh, field, values);
+      shown.glyphs = new Glyphs(shown.shape.origins(field.on), values);
       this.view.scene.add(shown.glyphs.object);
       this.setGlyphLength();
+      this.clipGlyphs(shown);
     }
     byId('glyph-size').hidden = !shown.glyphs;
     byId('glyph-note').textContent = shown.glyphs
@@ -177,8 +197,7 @@ export class App {
   /** Takes the colours of the page's theme. */
   private paint(): void {
     const colors = themeColors();
-    this.shown?.surface.setPlainColors(colors.surface, colors.noValue);
-    this.shown?.edges.setColor(colors.edges);
+    this.shown?.shape.setTheme(colors);
     this.shown?.glyphs?.setColor(colors.glyphs);
     this.view.draw();
   }
@@ -196,11 +215,13 @@ export class App {
     const on = (id: string, event: string, action: () => void): void =>
       byId(id).addEventListener(event, action);
     on('field', 'change', () => this.run(this.colorBy(Number(this.fieldSelect.value))));
+    on('previous-field', 'click', () => this.stepField(-1));
+    on('next-field', 'click', () => this.stepField(1));
     on('glyphs', 'change', () => this.run(this.showGlyphs(Number(this.glyphSelect.value))));
     on('glyph-length', 'input', () => this.setGlyphLength());
     on('edges', 'change', () => this.view.draw());
     on('flat', 'change', () => {
-      this.shown?.surface.setFlat(this.flatBox.checked);
+      this.shown?.shape.setFlat(this.flatBox.checked);
       this.view.draw();
     });
     on('up', 'change', () => this.fit(byId<HTMLSelectElement>('up').value as Axis));
@@ -224,6 +245,7 @@ export class App {
       toggleTheme: () => this.switchTheme(),
       togglePanel: () => this.togglePanel(),
       clearPick: () => this.clearPick(),
+      clip: this.clipping.actions,
     });
   }
 
@@ -239,7 +261,7 @@ export class App {
       down = null;
       if (!this.shown) return;
       const { origin, direction } = this.view.rayThrough(event.clientX, event.clientY);
-      const pick = pickAlong(this.shown.mesh, origin, direction);
+      const pick = this.shown.shape.pick(origin, direction);
       if (pick) this.run(this.show(pick));
       else this.clearPick();
     });
@@ -247,11 +269,9 @@ export class App {
 
   private async show(pick: Pick): Promise<void> {
     if (!this.shown) return;
-    const { mesh } = this.shown;
-    const [x, y, z] = mesh.positions.subarray(3 * pick.vertex, 3 * pick.vertex + 3);
-    this.marker.show(x, y, z);
+    this.marker.show(...pick.marker);
     this.view.draw();
-    await showPicked(mesh, pick, () => this.clearPick());
+    await showPicked(this.shown.shape.info, pick, () => this.clearPick());
   }
 
   private clearPick(): void {
@@ -263,19 +283,21 @@ export class App {
   private goToVertex(): void {
     const input = byId<HTMLInputElement>('vertex');
     const vertex = parse(input.value);
-    const n = this.shown?.mesh.info.vertices ?? 0;
+    const n = this.shown?.shape.info.vertices ?? 0;
     const exists = Number.isInteger(vertex) && vertex >= 0 && vertex < n;
     input.setCustomValidity(exists ? '' : `A number from 0 to ${n - 1}`);
     if (!input.reportValidity() || !this.shown) return;
-    const [x, y, z] = this.shown.mesh.positions.subarray(3 * vertex, 3 * vertex + 3);
-    this.view.lookAt(x, y, z);
-    this.run(this.show({ vertex, face: -1 }));
+    const pick = this.shown.shape.pickVertex(vertex);
+    this.view.lookAt(...pick.marker);
+    this.run(this.show(pick));
   }
 
+  /** Through the fields in a circle; "nothing" is only there where there are none. */
   private stepField(by: number): void {
-    const n = this.fieldSelect.options.length;
-    this.fieldSelect.selectedIndex = (this.fieldSelect.selectedIndex + by + n) % n;
-    this.run(this.colorBy(Number(this.fieldSelect.value)));
+    const n = this.shown?.channels.length ?? 0;
+    if (n === 0) return;
+    const last = Number(this.fieldSelect.value);
+    this.run(this.colorBy(last < 0 && by < 0 ? n - 1 : (last + by + n) % n));
   }
 
   private stepMesh(by: number): void {
@@ -285,7 +307,7 @@ export class App {
 
   private fit(up?: Axis): void {
     if (!this.shown) return;
-    this.view.fit(this.shown.mesh, up);
+    this.view.fit(this.shown.shape.extent, up);
     byId<HTMLSelectElement>('up').value = this.view.up;
   }
 
@@ -301,7 +323,7 @@ export class App {
   }
 
   private async picture(): Promise<void> {
-    const title = this.shown?.mesh.info.title ?? this.page.title;
+    const title = this.shown?.shape.info.title ?? this.page.title;
     const blob = await takePicture(this.view, this.coloring.legend.current);
     download(blob, `${title.replace(/[^\p{L}\p{N}._-]+/gu, '-') || 'mesh'}.png`);
   }

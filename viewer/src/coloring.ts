@@ -14,14 +14,14 @@ import { drawHistogram } from './histogram';
 import { Legend, legendState } from './legend';
 import { digitsFor, format, parse } from './numbers';
 import { byId } from './page';
-import type { Surface } from './surface';
+import type { Shape } from './shape';
 
 const sliderSteps = 1000;
 
 /** Colour map, range and isolines of the shown scalar, and their controls. */
 export class Coloring {
   readonly legend = new Legend();
-  private surface: Surface | null = null;
+  private shape: Shape | null = null;
   private scalars: Scalars | null = null;
   private range: Range = { low: 0, high: 1 };
   private map: ColorMap = colorMaps[0];
@@ -53,19 +53,19 @@ export class Coloring {
     this.apply();
   }
 
-  /** Colours `surface` by `channel`, or leaves it plain. */
-  async show(surface: Surface, channel: Channel | null): Promise<void> {
+  /** Colours `shape` by `channel`, or leaves it plain. */
+  async show(shape: Shape, channel: Channel | null): Promise<void> {
     const scalars = channel ? await loadChannel(channel) : null;
-    this.surface = surface;
+    this.shape = shape;
     this.scalars = scalars;
     this.controls.hidden = scalars === null;
-    surface.setScalars(scalars);
+    shape.setScalars(scalars);
     if (scalars) {
       const range = defaultRange(scalars);
       const signed = isSigned(range);
       this.range = signed ? symmetric(range) : range;
       if (signed !== this.map.diverging) this.map = mapNamed(signed ? 'blue-red' : 'viridis');
-      byId('isoline-controls').hidden = scalars.on === 'face';
+      byId('isoline-controls').hidden = scalars.on !== 'vertex';
       this.isolines.checked = /dist|geodesic/i.test(scalars.label);
       this.setMap(this.map);
     } else {
@@ -81,7 +81,7 @@ export class Coloring {
   private setMap(map: ColorMap): void {
     this.map = map;
     this.mapSelect.value = map.name;
-    this.surface?.setColors(colorTexture(map));
+    this.shape?.setColors(colorTexture(map));
     this.apply();
   }
 
@@ -127,13 +127,13 @@ export class Coloring {
   }
 
   private apply(): void {
-    if (!this.scalars || !this.surface) {
+    if (!this.scalars || !this.shape) {
       this.legend.show(null);
     } else {
       const span = this.range.high - this.range.low;
       const step = span / Number(this.isolineCount.value);
       const drawn = this.isolines.checked && this.scalars.on === 'vertex' && step > 0;
-      this.surface.setRange(this.range, drawn ? step : 0);
+      this.shape.setRange(this.range, drawn ? step : 0);
       byId('isoline-number').hidden = !drawn;
       byId('isoline-step').textContent = `every ${format(step, 3)}`;
       this.legend.show(legendState(this.scalars, this.map, this.range));

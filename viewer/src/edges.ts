@@ -1,19 +1,12 @@
-import {
-  BufferAttribute,
-  BufferGeometry,
-  Color,
-  GLSL3,
-  LineSegments,
-  ShaderMaterial,
-} from 'three';
-import type { Mesh } from './mesh';
+import { BufferGeometry, Color, GLSL3, LineSegments, ShaderMaterial } from 'three';
+import { cellShader, plainShader, type CellUniforms } from './shading';
 
 const vertexShader = /* glsl */ `
   uniform float meanEdge;
   uniform float pixelsPerUnit;
   out float opacity;
   void main() {
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(placed(), 1.0);
     float pixels = meanEdge * pixelsPerUnit / gl_Position.w;
     opacity = smoothstep(1.5, 9.0, pixels);
   }
@@ -25,6 +18,7 @@ const fragmentShader = /* glsl */ `
   in float opacity;
   out vec4 pixel;
   void main() {
+    clip();
     pixel = vec4(color, strength * opacity);
   }
 `;
@@ -34,26 +28,32 @@ export class Edges {
   readonly object: LineSegments<BufferGeometry, ShaderMaterial>;
   private readonly uniforms;
 
-  constructor(mesh: Mesh) {
+  /** \param cells  where the lines are those of cells */
+  constructor(meanEdge: number, cells?: CellUniforms) {
     this.uniforms = {
-      meanEdge: { value: mesh.meanEdge },
+      meanEdge: { value: meanEdge },
       pixelsPerUnit: { value: 1 },
       color: { value: new Color() },
       strength: { value: 0.55 },
     };
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(mesh.positions, 3));
-    geometry.setIndex(new BufferAttribute(mesh.edges, 1));
+    const shader = cells ? cellShader : plainShader;
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
-      vertexShader,
-      fragmentShader,
-      uniforms: this.uniforms,
+      vertexShader: shader.vertex + vertexShader,
+      fragmentShader: shader.fragment + fragmentShader,
+      uniforms: { ...this.uniforms, ...cells },
       transparent: true,
       depthWrite: false,
     });
-    this.object = new LineSegments(geometry, material);
+    this.object = new LineSegments(new BufferGeometry(), material);
     this.object.frustumCulled = false;
+    this.object.renderOrder = 1;
+  }
+
+  /** Positions, and two of them a line. */
+  setGeometry(geometry: BufferGeometry): void {
+    this.object.geometry.dispose();
+    this.object.geometry = geometry;
   }
 
   setColor(color: string): void {

@@ -7,16 +7,16 @@ import {
   InstancedBufferGeometry,
   Mesh as ThreeMesh,
   ShaderMaterial,
+  Vector4,
   type BufferGeometry,
 } from 'three';
 import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
-import type { FieldInfo } from './page';
-import { faceCentre, type Mesh } from './mesh';
 
 const maxGlyphs = 2500;
 
 const vertexShader = /* glsl */ `
   uniform float size;
+  uniform vec4 plane;
   in vec3 origin;
   in vec3 direction;
   out vec3 n;
@@ -30,6 +30,8 @@ const vertexShader = /* glsl */ `
     // Tangent arrows lie in the surface: moved towards the eye they look the same, in front of it.
     at.xyz *= 1.0 - 0.12 * size / length(at.xyz);
     gl_Position = projectionMatrix * at;
+    // Arrows at a cut are seen in front of it.
+    if (dot(origin, plane.xyz) > plane.w + 0.4 * size) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   }
 `;
 
@@ -57,12 +59,18 @@ export class Glyphs {
   readonly object: ThreeMesh<InstancedBufferGeometry, ShaderMaterial>;
   readonly nShown: number;
   readonly nAll: number;
-  private readonly uniforms = { size: { value: 1 }, color: { value: new Color() } };
+  private readonly uniforms = {
+    size: { value: 1 },
+    color: { value: new Color() },
+    plane: { value: new Vector4(0, 0, 0, 1) },
+  };
   private readonly spacing: number;
 
-  /** \param values  the field's numbers as stored, three a row */
-  constructor(mesh: Mesh, field: FieldInfo, values: Float32Array) {
-    const origins = originsOf(mesh, field);
+  /**
+   * \param origins  where the arrows start
+   * \param values   the field's numbers as stored; three a row, both
+   */
+  constructor(origins: Float32Array, values: Float32Array) {
     const chosen = chooseEvenly(origins, values);
     this.nShown = chosen.rows.length;
     this.nAll = values.length / 3;
@@ -97,6 +105,12 @@ export class Glyphs {
     this.uniforms.size.value = 1.3 * this.spacing * factor;
   }
 
+  /** Arrows that start beyond the plane are not drawn; null: all are. */
+  setPlane(plane: Vector4 | null): void {
+    if (plane) this.uniforms.plane.value.copy(plane);
+    else this.uniforms.plane.value.set(0, 0, 0, 1);
+  }
+
   setColor(color: string): void {
     this.uniforms.color.value.setStyle(color, '');
   }
@@ -105,17 +119,6 @@ export class Glyphs {
     this.object.geometry.dispose();
     this.object.material.dispose();
   }
-}
-
-function originsOf(mesh: Mesh, field: FieldInfo): Float32Array {
-  if (field.on === 'vertex') return mesh.positions;
-  const centres = new Float32Array(3 * mesh.nFaces);
-  const centre: [number, number, number] = [0, 0, 0];
-  for (let f = 0; f < mesh.nFaces; ++f) {
-    faceCentre(mesh, f, centre);
-    centres.set(centre, 3 * f);
-  }
-  return centres;
 }
 
 function isArrow(values: Float32Array, row: number): boolean {

@@ -11,18 +11,37 @@ export interface Actions {
   toggleTheme: () => void;
   togglePanel: () => void;
   clearPick: () => void;
+  clip: ClipActions;
+}
+
+/** What only volumes have. */
+export interface ClipActions {
+  stepMode: () => void;
+  setAxis: (axis: 'x' | 'y' | 'z') => void;
+  /** By hundredths of the mesh. */
+  move: (by: number) => void;
+  flip: () => void;
+  play: () => void;
+  stepShrink: (by: number) => void;
+  stepExplode: (by: number) => void;
 }
 
 const list: [string, string][] = [
   ['Drag, one finger, arrow keys', 'Turn'],
   ['Right drag, two fingers, Shift + arrow keys', 'Move'],
   ['Wheel, pinch, + and −', 'Zoom'],
-  ['Click or tap', 'Read the nearest vertex'],
+  ['Click or tap', 'Read the nearest vertex; in volumes also the cell'],
   ['0', 'Reset the view'],
   ['[ and ]', 'Previous and next field'],
   ['Page up, page down', 'Previous and next mesh'],
   ['E', 'Polygon edges'],
   ['I', 'Isolines'],
+  ['C', 'Volumes: clip by a cut, by whole cells, not'],
+  ['X, Y, Z', 'Clip across that axis'],
+  [', and .', 'Move the clip plane'],
+  ['F, A', 'Flip the clip plane, let it move'],
+  ['J and K', 'Shrink the cells less and more'],
+  ['N and M', 'Explode the cells less and more'],
   ['P', 'Save a picture'],
   ['T', 'Light or dark'],
   ['S', 'Settings'],
@@ -67,6 +86,7 @@ function ownsKeys(target: EventTarget | null): boolean {
 }
 
 export function listenToKeys(view: View, actions: Actions): void {
+  const { clip } = actions;
   const plain: Record<string, () => void> = {
     '+': () => view.zoom(1.15),
     '=': () => view.zoom(1.15),
@@ -79,6 +99,18 @@ export function listenToKeys(view: View, actions: Actions): void {
     PageDown: () => actions.stepMesh(1),
     e: actions.toggleEdges,
     i: actions.toggleIsolines,
+    c: clip.stepMode,
+    x: () => clip.setAxis('x'),
+    y: () => clip.setAxis('y'),
+    z: () => clip.setAxis('z'),
+    ',': () => clip.move(-1),
+    '.': () => clip.move(1),
+    f: clip.flip,
+    a: clip.play,
+    j: () => clip.stepShrink(-1),
+    k: () => clip.stepShrink(1),
+    n: () => clip.stepExplode(-1),
+    m: () => clip.stepExplode(1),
     p: actions.picture,
     t: actions.toggleTheme,
     s: actions.togglePanel,

@@ -1,15 +1,11 @@
 import { breathe, readBytes, readFloats, readIntegers } from './blocks';
 import { polygonNormals } from './normals';
-import type { ItemInfo } from './page';
+import type { SurfaceInfo } from './page';
+import type { Box } from './shape';
 
-export interface Box {
-  min: [number, number, number];
-  max: [number, number, number];
-}
-
-/** One mesh of the page, in typed arrays; positions lie in a ball of radius 1 about 0. */
+/** One surface mesh of the page, in typed arrays; positions lie in a ball of radius 1 about 0. */
 export interface Mesh {
-  info: ItemInfo;
+  info: SurfaceInfo;
   nFaces: number;
   positions: Float32Array<ArrayBuffer>;
   /** Face -> its first corner. */
@@ -30,7 +26,7 @@ export interface Mesh {
   meanEdge: number;
 }
 
-function offsetsOf(sizes: Uint32Array): Uint32Array<ArrayBuffer> {
+export function offsetsOf(sizes: Uint32Array): Uint32Array<ArrayBuffer> {
   const offsets = new Uint32Array(sizes.length + 1);
   for (let f = 0; f < sizes.length; ++f) offsets[f + 1] = offsets[f] + sizes[f];
   return offsets;
@@ -53,7 +49,7 @@ function edgesOf(
   return edges;
 }
 
-function boxOf(positions: Float32Array, vertices: Uint32Array): Box {
+export function boxOf(positions: Float32Array, vertices: Uint32Array): Box {
   const box: Box = { min: [0, 0, 0], max: [0, 0, 0] };
   for (let k = 0; k < 3; ++k) {
     let low = Infinity;
@@ -71,7 +67,7 @@ function boxOf(positions: Float32Array, vertices: Uint32Array): Box {
   return box;
 }
 
-function meanEdgeLength(positions: Float32Array, edges: Uint32Array): number {
+export function meanEdgeLength(positions: Float32Array, edges: Uint32Array): number {
   let sum = 0;
   for (let i = 0; i < edges.length; i += 2) {
     const a = 3 * edges[i];
@@ -87,7 +83,7 @@ function meanEdgeLength(positions: Float32Array, edges: Uint32Array): number {
 
 /** \param progress called with the fraction done */
 export async function loadMesh(
-  info: ItemInfo,
+  info: SurfaceInfo,
   progress: (fraction: number) => void,
 ): Promise<Mesh> {
   const step = async (fraction: number): Promise<void> => {

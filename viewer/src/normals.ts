@@ -1,4 +1,12 @@
-import type { Mesh } from './mesh';
+/** Polygons with their normals. */
+interface Polygons {
+  nFaces: number;
+  positions: Float32Array;
+  faceOffsets: Uint32Array;
+  faceVertices: Uint32Array;
+  faceNormals: Float32Array;
+  vertexNormals: Float32Array;
+}
 
 function normalise(vectors: Float32Array): void {
   for (let i = 0; i < vectors.length; i += 3) {
@@ -56,7 +64,7 @@ const creaseCosine = 0.766;
 const maxCreasedValence = 64;
 
 /** Vertex -> its corners, by counting. */
-function cornersOfVertices(mesh: Mesh): { offsets: Uint32Array; corners: Uint32Array } {
+function cornersOfVertices(mesh: Polygons): { offsets: Uint32Array; corners: Uint32Array } {
   const { faceVertices } = mesh;
   const offsets = new Uint32Array(mesh.positions.length / 3 + 1);
   for (let c = 0; c < faceVertices.length; ++c) ++offsets[faceVertices[c] + 1];
@@ -67,7 +75,7 @@ function cornersOfVertices(mesh: Mesh): { offsets: Uint32Array; corners: Uint32A
   return { offsets, corners };
 }
 
-function facesOfCorners(mesh: Mesh): Uint32Array {
+function facesOfCorners(mesh: Polygons): Uint32Array {
   const faces = new Uint32Array(mesh.faceVertices.length);
   for (let f = 0; f < mesh.nFaces; ++f)
     faces.fill(f, mesh.faceOffsets[f], mesh.faceOffsets[f + 1]);
@@ -75,7 +83,7 @@ function facesOfCorners(mesh: Mesh): Uint32Array {
 }
 
 /** A normal a corner: the mean over the faces at its vertex that turn little from its own. */
-export function creasedNormals(mesh: Mesh): Float32Array {
+export function creasedNormals(mesh: Polygons): Float32Array {
   const { faceNormals: n, vertexNormals, faceVertices } = mesh;
   const { offsets, corners } = cornersOfVertices(mesh);
   const faces = facesOfCorners(mesh);

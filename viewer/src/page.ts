@@ -1,6 +1,6 @@
 /** What the program wrote into the page, beside the blocks of numbers. */
 
-export type Place = 'vertex' | 'face';
+export type Place = 'vertex' | 'face' | 'cell';
 
 export interface FieldInfo {
   name: string;
@@ -12,7 +12,7 @@ export interface FieldInfo {
   block: number;
 }
 
-export interface ItemInfo {
+interface CommonInfo {
   title: string;
   vertices: number;
   edges: number;
@@ -23,10 +23,24 @@ export interface ItemInfo {
   faceSizes: number;
   faceVertices: number;
   triangleCorners: number;
-  triangleFaces: number;
-  edgeBits: number;
   fields: FieldInfo[];
 }
+
+export interface SurfaceInfo extends CommonInfo {
+  kind: 'surface';
+  triangleFaces: number;
+  edgeBits: number;
+}
+
+export interface VolumeInfo extends CommonInfo {
+  kind: 'volume';
+  cellSizes: number;
+  /** 2 * face, + 1 where the face's normal points into the cell. */
+  cellSides: number;
+  patches: { name: string; faces: number }[];
+}
+
+export type ItemInfo = SurfaceInfo | VolumeInfo;
 
 export interface PageInfo {
   title: string;

@@ -1,21 +1,53 @@
 import { loadField } from './fields';
-import type { Mesh } from './mesh';
 import { count, digitsFor, format } from './numbers';
-import { byId, type FieldInfo } from './page';
-import type { Pick } from './picking';
+import { byId, type FieldInfo, type ItemInfo, type Place } from './page';
+import type { Pick } from './shape';
 
-/** Position of a vertex in the mesh's own unit. */
-export function positionOf(mesh: Mesh, vertex: number): number[] {
-  return mesh.info.centre.map((x, k) => x + mesh.info.scale * mesh.positions[3 * vertex + k]);
+/** One heading with its rows, and the fields that are read there. */
+export interface PickedPart {
+  title: string;
+  rows: [string, string][];
+  on: Place;
+  /** Row of the fields and its weight. */
+  weights: [number, number][];
 }
 
-async function valueText(field: FieldInfo, row: number): Promise<string> {
+/** Position of a stored point in the mesh's own unit, as rows. */
+export function positionRows(info: ItemInfo, stored: ArrayLike<number>): [string, string][] {
+  return info.centre.map((centre, k) => {
+    const x = centre + info.scale * stored[k];
+    return ['xyz'[k], format(x, digitsFor(x, info.scale))];
+  });
+}
+
+export function vertexPart(info: ItemInfo, positions: Float32Array, vertex: number): PickedPart {
+  return {
+    title: `Vertex ${count(vertex)}`,
+    rows: positionRows(info, positions.subarray(3 * vertex, 3 * vertex + 3)),
+    on: 'vertex',
+    weights: [[vertex, 1]],
+  };
+}
+
+export function facePart(face: number, nVertices: number): PickedPart {
+  return {
+    title: `Face ${count(face)}`,
+    rows: [['vertices', String(nVertices)]],
+    on: 'face',
+    weights: [[face, 1]],
+  };
+}
+
+async function valueText(field: FieldInfo, weights: [number, number][]): Promise<string> {
   const values = await loadField(field);
-  const begin = row * field.components;
   const digits = digitsFor(field.offset, field.offset === 0 ? 0 : 1e-3 * Math.abs(field.offset), 7);
-  return Array.from(values.subarray(begin, begin + field.components), (stored) =>
-    format(field.offset + field.scale * stored, digits),
-  ).join(', ');
+  return Array.from({ length: field.components }, (_, k) => {
+    const stored = weights.reduce(
+      (sum, [row, weight]) => sum + weight * values[row * field.components + k],
+      0,
+    );
+    return format(field.offset + field.scale * stored, digits);
+  }).join(', ');
 }
 
 function row(name: string, value: string): HTMLTableRowElement {
@@ -29,56 +61,29 @@ function row(name: string, value: string): HTMLTableRowElement {
   return line;
 }
 
-function heading(text: string): HTMLHeadingElement {
-  const element = document.createElement('h2');
-  element.textContent = text;
-  return element;
-}
-
-async function table(
-  fields: FieldInfo[],
-  element: number,
-  first: HTMLTableRowElement[],
-): Promise<HTMLTableElement> {
-  const result = document.createElement('table');
-  result.append(...first);
-  for (const field of fields) result.append(row(field.name, await valueText(field, element)));
-  return result;
+async function elementsOf(part: PickedPart, fields: FieldInfo[]): Promise<HTMLElement[]> {
+  const heading = document.createElement('h2');
+  heading.textContent = part.title;
+  const table = document.createElement('table');
+  table.append(...part.rows.map(([name, value]) => row(name, value)));
+  for (const field of fields)
+    if (field.on === part.on) table.append(row(field.name, await valueText(field, part.weights)));
+  return [heading, table];
 }
 
 /** Shows number, position and all values of what was picked; `close` for its button. */
-export async function showPicked(mesh: Mesh, pick: Pick, close: () => void): Promise<void> {
+export async function showPicked(info: ItemInfo, pick: Pick, close: () => void): Promise<void> {
   const button = document.createElement('button');
   button.className = 'icon close';
   button.title = 'Close (Esc)';
   button.setAttribute('aria-label', 'Close');
   button.textContent = '×';
   button.addEventListener('click', close);
-  const { fields } = mesh.info;
-  const position = positionOf(mesh, pick.vertex);
-  const parts: HTMLElement[] = [
-    button,
-    heading(`Vertex ${count(pick.vertex)}`),
-    await table(
-      fields.filter((field) => field.on === 'vertex'),
-      pick.vertex,
-      position.map((x, k) => row('xyz'[k], format(x, digitsFor(x, mesh.info.scale)))),
-    ),
-  ];
-  if (pick.face >= 0) {
-    const size = mesh.faceOffsets[pick.face + 1] - mesh.faceOffsets[pick.face];
-    parts.push(
-      heading(`Face ${count(pick.face)}`),
-      await table(
-        fields.filter((field) => field.on === 'face'),
-        pick.face,
-        [row('vertices', String(size))],
-      ),
-    );
-  }
+  const parts: HTMLElement[] = [button];
+  for (const part of pick.parts) parts.push(...(await elementsOf(part, info.fields)));
   const card = byId('picked');
-  card.dataset['vertex'] = String(pick.vertex);
-  card.dataset['face'] = String(pick.face);
+  for (const name of ['vertex', 'face', 'cell'] as const)
+    card.dataset[name] = String(pick[name]);
   card.replaceChildren(...parts);
   card.hidden = false;
 }
@@ -86,5 +91,5 @@ export async function showPicked(mesh: Mesh, pick: Pick, close: () => void): Pro
 export function hidePicked(): void {
   const card = byId('picked');
   card.hidden = true;
-  delete card.dataset['vertex'];
+  for (const name of ['vertex', 'face', 'cell']) delete card.dataset[name];
 }

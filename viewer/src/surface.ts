@@ -1,123 +1,63 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  Color,
-  DoubleSide,
-  GLSL3,
+  Group,
   Mesh as ThreeMesh,
-  ShaderMaterial,
-  Texture,
+  type ShaderMaterial,
+  type Texture,
+  type Vector3,
 } from 'three';
+import { Edges } from './edges';
 import type { Range, Scalars } from './fields';
-import type { Mesh } from './mesh';
+import { faceCentre, type Mesh } from './mesh';
 import { creasedNormals } from './normals';
-
-/** Stands for "no value"; stored values stay far below. */
-const missing = 1e35;
+import { count } from './numbers';
+import type { Place, SurfaceInfo } from './page';
+import { facePart, vertexPart } from './picked';
+import { firstTriangle } from './ray';
+import { Shading, shaderValue } from './shading';
+import type { Pick, Shape } from './shape';
+import type { ThemeColors } from './theme';
 
 /** Up to here every triangle gets corners of its own, so that creases stay sharp. */
 const maxSharpTriangles = 400000;
 
-const vertexShader = /* glsl */ `
-  in float value;
-  out vec3 eye;
-  out vec3 smoothNormal;
-  out float v;
-  void main() {
-    vec4 at = modelViewMatrix * vec4(position, 1.0);
-    eye = at.xyz;
-    smoothNormal = normalMatrix * normal;
-    v = value;
-    gl_Position = projectionMatrix * at;
-  }
-`;
-
-const fragmentShader = /* glsl */ `
-  uniform bool colored;
-  uniform vec3 plain;
-  uniform vec3 noValue;
-  uniform sampler2D colors;
-  uniform float low;
-  uniform float span;
-  uniform float isolineStep;
-  in vec3 eye;
-  in vec3 smoothNormal;
-  in float v;
-  out vec4 pixel;
-
-  // Width-constant lines at low + k * isolineStep; they fade where they lie closer than pixels.
-  float isoline() {
-    float level = (v - low) / isolineStep;
-    float perPixel = fwidth(level);
-    if (!(perPixel > 0.0)) return 0.0;
-    float distance = abs(fract(level + 0.5) - 0.5) / perPixel;
-    return (1.0 - smoothstep(0.45, 1.35, distance)) * (1.0 - smoothstep(0.15, 0.4, perPixel));
-  }
-
-  void main() {
-    vec3 facet = normalize(cross(dFdx(eye), dFdy(eye)));
-    if (dot(facet, eye) > 0.0) facet = -facet;
-    vec3 n = dot(smoothNormal, smoothNormal) > 0.01 ? normalize(smoothNormal) : facet;
-    if (dot(n, facet) < 0.0) n = -n;
-
-    vec3 base = plain;
-    if (colored) {
-      float line = isolineStep > 0.0 ? isoline() : 0.0;
-      if (v > 1e31) {
-        base = noValue;
-      } else {
-        float t = span > 0.0 ? clamp((v - low) / span, 0.0, 1.0) : 0.5;
-        base = texture(colors, vec2((t * 255.0 + 0.5) / 256.0, 0.5)).rgb;
-        float luminance = dot(base, vec3(0.299, 0.587, 0.114));
-        vec3 ink = luminance < 0.3 ? vec3(1.0) : vec3(0.0);
-        base = mix(base, ink, 0.7 * line);
-      }
-    }
-
-    vec3 toEye = normalize(-eye);
-    vec3 key = normalize(vec3(-0.35, 0.55, 0.75));
-    float light = 0.34 + 0.52 * max(dot(n, key), 0.0) + 0.26 * max(dot(n, toEye), 0.0);
-    float gloss = 0.05 * pow(max(dot(n, normalize(key + toEye)), 0.0), 40.0);
-    vec3 lit = pow(base, vec3(2.2)) * light + gloss;
-    pixel = vec4(pow(lit, vec3(1.0 / 2.2)), 1.0);
-  }
-`;
-
-/** The faces of a mesh: smoothly coloured by a vertex field, flat by a face field, or plain. */
-export class Surface {
-  readonly object: ThreeMesh<BufferGeometry, ShaderMaterial>;
-  private readonly uniforms = {
-    colored: { value: false },
-    plain: { value: new Color() },
-    noValue: { value: new Color() },
-    colors: { value: null as Texture | null },
-    low: { value: 0 },
-    span: { value: 1 },
-    isolineStep: { value: 0 },
-  };
+/** A surface mesh: smoothly coloured by a vertex field, flat by a face field, or plain. */
+export class Surface implements Shape {
+  readonly object = new Group();
+  readonly radius = 1;
+  readonly plane = null;
+  readonly isApart = false;
+  private readonly shading = new Shading();
+  private readonly faces: ThreeMesh<BufferGeometry, ShaderMaterial>;
+  private readonly edges: Edges;
   private scalars: Scalars | null = null;
   private flat = false;
   private layout = '';
 
   constructor(private readonly mesh: Mesh) {
-    const material = new ShaderMaterial({
-      glslVersion: GLSL3,
-      vertexShader,
-      fragmentShader,
-      uniforms: this.uniforms,
-      side: DoubleSide,
-      polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
-    });
-    this.object = new ThreeMesh(new BufferGeometry(), material);
-    this.object.frustumCulled = false;
+    this.faces = new ThreeMesh(new BufferGeometry(), this.shading.material());
+    this.faces.frustumCulled = false;
+    this.edges = new Edges(mesh.meanEdge);
+    const lines = new BufferGeometry();
+    lines.setAttribute('position', new BufferAttribute(mesh.positions, 3));
+    lines.setIndex(new BufferAttribute(mesh.edges, 1));
+    this.edges.setGeometry(lines);
+    this.object.add(this.faces, this.edges.object);
     this.update();
+  }
+
+  get info(): SurfaceInfo {
+    return this.mesh.info;
+  }
+
+  get extent(): Mesh {
+    return this.mesh;
   }
 
   setScalars(scalars: Scalars | null): void {
     this.scalars = scalars;
-    this.uniforms.colored.value = scalars !== null;
+    this.shading.setScalars(scalars);
     this.update();
   }
 
@@ -127,28 +67,75 @@ export class Surface {
   }
 
   setColors(colors: Texture): void {
-    this.uniforms.colors.value?.dispose();
-    this.uniforms.colors.value = colors;
+    this.shading.setColors(colors);
   }
 
-  /** \param isolineStep  0: none; both in the field's unit */
   setRange(range: Range, isolineStep: number): void {
-    if (!this.scalars) return;
-    const { offset, scale } = this.scalars;
-    this.uniforms.low.value = (range.low - offset) / scale;
-    this.uniforms.span.value = (range.high - range.low) / scale;
-    this.uniforms.isolineStep.value = isolineStep / scale;
+    this.shading.setRange(range, isolineStep);
   }
 
-  setPlainColors(plain: string, noValue: string): void {
-    this.uniforms.plain.value.setStyle(plain, '');
-    this.uniforms.noValue.value.setStyle(noValue, '');
+  setTheme({ surface, noValue, edges }: ThemeColors): void {
+    this.shading.setPlainColors(surface, noValue);
+    this.edges.setColor(edges);
+  }
+
+  setScreen(pixelsPerUnit: number, nearest: number, edgesWanted: boolean): void {
+    this.edges.setScreen(pixelsPerUnit, nearest, edgesWanted);
+  }
+
+  origins(on: Place): Float32Array {
+    if (on === 'vertex') return this.mesh.positions;
+    const centres = new Float32Array(3 * this.mesh.nFaces);
+    const centre: [number, number, number] = [0, 0, 0];
+    for (let f = 0; f < this.mesh.nFaces; ++f) {
+      faceCentre(this.mesh, f, centre);
+      centres.set(centre, 3 * f);
+    }
+    return centres;
+  }
+
+  pick(origin: Vector3, ray: Vector3): Pick | null {
+    const { positions, triangles, triangleFaces } = this.mesh;
+    const hit = firstTriangle(positions, triangles, origin, ray);
+    if (!hit) return null;
+    const face = triangleFaces[hit.triangle];
+    const at = ray.clone().multiplyScalar(hit.distance).add(origin);
+    const pick = this.pickVertex(this.nearestVertex(face, at));
+    const nVertices = this.mesh.faceOffsets[face + 1] - this.mesh.faceOffsets[face];
+    return { ...pick, face, parts: [...pick.parts, facePart(face, nVertices)] };
+  }
+
+  pickVertex(vertex: number): Pick {
+    const [x, y, z] = this.mesh.positions.subarray(3 * vertex, 3 * vertex + 3);
+    const parts = [vertexPart(this.info, this.mesh.positions, vertex)];
+    return { vertex, face: -1, cell: -1, marker: [x, y, z], parts };
+  }
+
+  counts(): string {
+    const { vertices, edges } = this.info;
+    return `${count(vertices)} vertices, ${count(edges)} edges, ${count(this.mesh.nFaces)} faces`;
   }
 
   dispose(): void {
-    this.object.geometry.dispose();
-    this.object.material.dispose();
-    this.uniforms.colors.value?.dispose();
+    this.faces.geometry.dispose();
+    this.faces.material.dispose();
+    this.edges.dispose();
+    this.shading.dispose();
+  }
+
+  private nearestVertex(face: number, at: Vector3): number {
+    const { positions: p, faceOffsets, faceVertices } = this.mesh;
+    let vertex = -1;
+    let nearest = Infinity;
+    for (let c = faceOffsets[face]; c < faceOffsets[face + 1]; ++c) {
+      const v = faceVertices[c];
+      const away = Math.hypot(p[3 * v] - at.x, p[3 * v + 1] - at.y, p[3 * v + 2] - at.z);
+      if (away < nearest) {
+        nearest = away;
+        vertex = v;
+      }
+    }
+    return vertex;
   }
 
   private update(): void {
@@ -159,11 +146,11 @@ export class Surface {
     const layout = own ? (this.flat ? 'flat' : 'creased') : 'shared';
     if (layout !== this.layout) {
       this.layout = layout;
-      this.object.geometry.dispose();
-      this.object.geometry = own ? cornerGeometry(this.mesh, this.flat) : sharedGeometry(this.mesh);
+      this.faces.geometry.dispose();
+      this.faces.geometry = own ? cornerGeometry(this.mesh, this.flat) : sharedGeometry(this.mesh);
     }
     const values = valuesFor(this.mesh, this.scalars, own);
-    this.object.geometry.setAttribute('value', new BufferAttribute(values, 1));
+    this.faces.geometry.setAttribute('value', new BufferAttribute(values, 1));
   }
 }
 
@@ -210,8 +197,7 @@ function valuesFor(
   const onFaces = scalars.on === 'face';
   for (let i = 0; i < n; ++i) {
     const row = !ownCorners ? i : onFaces ? mesh.triangleFaces[(i / 3) | 0] : mesh.triangles[i];
-    const value = scalars.values[row];
-    values[i] = Number.isFinite(value) ? value : missing;
+    values[i] = shaderValue(scalars.values[row]);
   }
   return values;
 }

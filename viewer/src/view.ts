@@ -1,6 +1,6 @@
 import { PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { Box, Mesh } from './mesh';
+import type { Box, Extent } from './shape';
 
 export type Axis = 'x' | 'y' | 'z';
 
@@ -54,6 +54,7 @@ export class View {
   readonly camera = new PerspectiveCamera(fieldOfView, 1, 0.01, 100);
   private controls: OrbitControls;
   private scheduled = false;
+  private radius = 1;
 
   /** \param beforeDraw  called with the pixels of a unit at distance 1, and the nearest distance */
   constructor(
@@ -71,9 +72,9 @@ export class View {
   }
 
   /** Shows all of the mesh, from the default side. */
-  fit(mesh: Mesh, up?: Axis): void {
+  fit(extent: Extent, up?: Axis): void {
     this.resize();
-    const { box } = mesh;
+    const { box } = extent;
     const pose = up ? poseAbout(up, 0.35) : defaultPose(box);
     this.camera.up.copy(axes[pose.up]);
     this.controls.dispose();
@@ -83,10 +84,20 @@ export class View {
     this.camera.position.copy(centre).add(pose.direction);
     this.camera.lookAt(centre);
     this.camera.updateMatrixWorld();
-    const distance = this.fittingDistance(mesh, centre);
-    this.camera.position.copy(centre).addScaledVector(pose.direction, distance);
+    const distance = this.fittingDistance(extent, centre);
+    this.camera.position.copy(centre).addScaledVector(pose.direction, this.radius * distance);
     this.controls.update();
     this.draw();
+  }
+
+  /** How far from 0 anything is drawn. */
+  setRadius(radius: number): void {
+    this.radius = radius;
+  }
+
+  /** From what is looked at towards the camera. */
+  get towardsCamera(): Vector3 {
+    return this.camera.position.clone().sub(this.controls.target).normalize();
   }
 
   get up(): Axis {
@@ -158,8 +169,8 @@ export class View {
 
   drawNow(): void {
     const distance = this.camera.position.length();
-    this.camera.near = Math.max(distance - 1.1, 0.002 * Math.max(distance, 0.1));
-    this.camera.far = distance + 1.5;
+    this.camera.near = Math.max(distance - 1.1 * this.radius, 0.002 * Math.max(distance, 0.1));
+    this.camera.far = distance + 1.5 * this.radius;
     this.camera.updateProjectionMatrix();
     const pixels = this.renderer.domElement.height / 2;
     this.beforeDraw(pixels * this.camera.projectionMatrix.elements[5], this.camera.near);
@@ -180,16 +191,16 @@ export class View {
   }
 
   /** Smallest distance at which every vertex is in sight, with a margin. */
-  private fittingDistance(mesh: Mesh, centre: Vector3): number {
+  private fittingDistance(extent: Extent, centre: Vector3): number {
     const margin = 1.1;
     const upTangent = Math.tan((fieldOfView * Math.PI) / 360) / margin;
     const sideTangent = upTangent * this.camera.aspect;
     const toCamera = this.camera.matrixWorld.clone().setPosition(0, 0, 0).invert();
     let distance = 0.05;
     const vertex = new Vector3();
-    const stride = Math.max(1, Math.floor(mesh.faceVertices.length / 50000));
-    for (let c = 0; c < mesh.faceVertices.length; c += stride) {
-      vertex.fromArray(mesh.positions, 3 * mesh.faceVertices[c]);
+    const stride = Math.max(1, Math.floor(extent.faceVertices.length / 50000));
+    for (let c = 0; c < extent.faceVertices.length; c += stride) {
+      vertex.fromArray(extent.positions, 3 * extent.faceVertices[c]);
       vertex.sub(centre).applyMatrix4(toCamera);
       distance = Math.max(
         distance,

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "carat/base/atomic_file.h"
@@ -156,30 +157,87 @@ std::vector<std::uint8_t> edge_bits(const PolygonMesh& mesh) {
   return bits;
 }
 
-json write_item(const ViewItem& item, detail::BlockWriter& blocks) {
-  const SurfaceData& data = std::get<SurfaceData>(item.data);
-  const PolygonMesh& mesh = data.mesh;
-  json entry = write_positions(mesh.points(), blocks);
-  entry["title"] = item.title;
-  entry["vertices"] = mesh.n_vertices();
-  entry["edges"] = mesh.n_edges();
+/// The faces of a mesh and their triangles.
+void write_faces(const PolygonMesh& mesh, detail::BlockWriter& blocks, json& entry,
+                 std::vector<Index>& source_faces) {
   std::vector<Index> sizes(static_cast<std::size_t>(mesh.n_faces()));
   for (Index f = 0; f < mesh.n_faces(); ++f)
     sizes[static_cast<std::size_t>(f)] = mesh.faces().size(f);
+  entry["vertices"] = mesh.n_vertices();
+  entry["edges"] = mesh.n_edges();
   entry["faceSizes"] = blocks.write_integers(sizes);
   entry["faceVertices"] = blocks.write_integers(mesh.faces().indices);
-  {
-    std::vector<Index> source_faces;
-    const PolygonMesh triangles = triangulate(mesh, &source_faces);
-    entry["triangleCorners"] =
-        blocks.write_integers(triangle_corners(mesh, triangles, source_faces));
-    entry["triangleFaces"] = blocks.write_integers(source_faces);
-  }
-  entry["edgeBits"] = blocks.write_bytes(edge_bits(mesh));
+  const PolygonMesh triangles = triangulate(mesh, &source_faces);
+  entry["triangleCorners"] = blocks.write_integers(triangle_corners(mesh, triangles, source_faces));
+}
+
+json write_mesh(const SurfaceData& data, detail::BlockWriter& blocks) {
+  json entry = write_positions(data.mesh.points(), blocks);
+  entry["kind"] = "surface";
+  std::vector<Index> source_faces;
+  write_faces(data.mesh, blocks, entry, source_faces);
+  entry["triangleFaces"] = blocks.write_integers(source_faces);
+  entry["edgeBits"] = blocks.write_bytes(edge_bits(data.mesh));
   entry["fields"] = json::array();
   write_fields(data.fields.vertex, "vertex", blocks, entry["fields"]);
   write_fields(data.fields.face, "face", blocks, entry["fields"]);
   return entry;
+}
+
+/// Every face of every cell: twice its number, and one more where its normal points into the cell.
+/// An Index holds that, as it holds the number of the faces' corners.
+std::vector<Index> cell_sides(const PolyhedralMesh& mesh) {
+  const Csr& cells = mesh.cells();
+  std::vector<Index> sides(cells.indices.size());
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (Index i = cells.begin(c); i < cells.end(c); ++i) {
+      const Index f = cells.indices[i];
+      sides[static_cast<std::size_t>(i)] =
+          2 * f + (mesh.face_cells()[static_cast<std::size_t>(f)].above == c ? 1 : 0);
+    }
+  return sides;
+}
+
+json write_mesh(const VolumeData& data, detail::BlockWriter& blocks) {
+  const PolyhedralMesh& mesh = data.mesh;
+  json entry = write_positions(mesh.points(), blocks);
+  entry["kind"] = "volume";
+  std::vector<Index> source_faces;
+  write_faces(mesh.face_mesh(), blocks, entry, source_faces);
+  std::vector<Index> sizes(static_cast<std::size_t>(mesh.n_cells()));
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    sizes[static_cast<std::size_t>(c)] = mesh.cells().size(c);
+  entry["cellSizes"] = blocks.write_integers(sizes);
+  entry["cellSides"] = blocks.write_integers(cell_sides(mesh));
+  entry["patches"] = json::array();
+  for (const BoundaryPatch& patch : data.patches)
+    entry["patches"].push_back(
+        {{"name", patch.name}, {"faces", blocks.write_integers(patch.faces)}});
+  entry["fields"] = json::array();
+  write_fields(data.fields.vertex, "vertex", blocks, entry["fields"]);
+  write_fields(data.fields.cell, "cell", blocks, entry["fields"]);
+  return entry;
+}
+
+json write_item(const ViewItem& item, detail::BlockWriter& blocks) {
+  json entry = std::visit([&](const auto& data) { return write_mesh(data, blocks); }, item.data);
+  entry["title"] = item.title;
+  return entry;
+}
+
+void check_item(const SurfaceData& data, const std::string& title) {
+  check_fields(data.fields.vertex, data.mesh.n_vertices(), "vertices", title);
+  check_fields(data.fields.face, data.mesh.n_faces(), "faces", title);
+}
+
+void check_item(const VolumeData& data, const std::string& title) {
+  check_fields(data.fields.vertex, data.mesh.n_vertices(), "vertices", title);
+  check_fields(data.fields.cell, data.mesh.n_cells(), "cells", title);
+  for (const BoundaryPatch& patch : data.patches)
+    for (const Index f : patch.faces)
+      if (f < 0 || f >= data.mesh.n_faces())
+        throw InvalidOption(title + ": patch \"" + patch.name + "\" has face " + std::to_string(f) +
+                            ", but the mesh has " + std::to_string(data.mesh.n_faces()) + " faces");
 }
 
 void write_page(std::ostream& out, const std::vector<ViewItem>& items, const std::string& title) {
@@ -203,11 +261,8 @@ void write_html_view(const std::filesystem::path& path, const std::vector<ViewIt
                      const std::string& title) {
   if (items.empty())
     throw InvalidOption(path.string() + ": no mesh to show; pass at least one item");
-  for (const ViewItem& item : items) {
-    const SurfaceData& data = std::get<SurfaceData>(item.data);
-    check_fields(data.fields.vertex, data.mesh.n_vertices(), "vertices", item.title);
-    check_fields(data.fields.face, data.mesh.n_faces(), "faces", item.title);
-  }
+  for (const ViewItem& item : items)
+    std::visit([&](const auto& data) { check_item(data, item.title); }, item.data);
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
     write_page(out, items, title);
