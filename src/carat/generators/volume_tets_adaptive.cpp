@@ -26,7 +26,7 @@ using Place = std::array<std::int64_t, 3>;
 /// come of them by bisection, have one longest edge, and there are three shapes of them.
 class Bisection {
  public:
-  explicit Bisection(double finest_at, int level) : finest_at_(finest_at), level_(level) {}
+  explicit Bisection(double finest_at) : finest_at_(finest_at) {}
 
   /// Eight cubes of six tetrahedra each, around diagonals from the middle to the corners.
   void start() {
@@ -35,36 +35,27 @@ class Bisection {
     for (int octant = 0; octant < 8; ++octant)
       for (const auto& order : orders) {
         Place at{kSide / 2, kSide / 2, kSide / 2};
-        Tet tet{number(at)};
+        Tet tet{{number(at)}, 0};
         for (int k = 0; k < 3; ++k) {
           at[order[k]] = (octant >> order[k] & 1) == 1 ? kSide : 0;
-          tet[k + 1] = number(at);
+          tet.corners[k + 1] = number(at);
         }
         tets_.push_back(tet);
       }
   }
 
-  /// Until no tetrahedron is too large and none has a vertex in the middle of an edge.
-  void refine() {
-    for (bool changed = true; changed;) {
-      changed = false;
-      std::vector<Tet> next;
-      next.reserve(2 * tets_.size());
-      for (const Tet& tet : tets_) {
-        const auto [a, b] = longest_edge(tet);
-        if (!is_too_large(tet[a], tet[b]) && !has_hanging_vertex(tet)) {
-          next.push_back(tet);
-          continue;
-        }
-        changed = true;
-        const Index middle = number(midpoint(tet[a], tet[b]));
-        for (const int replaced : {b, a}) {
-          next.push_back(tet);
-          next.back()[replaced] = middle;
-        }
-      }
-      tets_ = std::move(next);
-    }
+  /// Until no tetrahedron is too large where it lies.
+  void grade() {
+    bisect_while([this](const Tet& tet) {
+      const auto [a, b] = longest_edge(tet);
+      return is_too_large(tet.corners[a], tet.corners[b]);
+    });
+  }
+
+  /// Bisects every tetrahedron 3 * `times` times: three bisections halve the size.
+  void halve(int times) {
+    for (Tet& tet : tets_) tet.due = 3 * times;
+    bisect_while([](const Tet& tet) { return tet.due > 0; });
   }
 
   PolyhedralMesh build(const VolumeDomain& domain, double anisotropy) const {
@@ -74,12 +65,40 @@ class Bisection {
         points(static_cast<Eigen::Index>(v), k) =
             static_cast<double>(places_[v][k]) / static_cast<double>(kSide);
     VolumeBuilder cells(place_points(domain, points, anisotropy));
-    for (const Tet& tet : tets_) cells.add(CellType::Tetrahedron, tet);
+    for (const Tet& tet : tets_) cells.add(CellType::Tetrahedron, tet.corners);
     return std::move(cells).build();
   }
 
  private:
-  using Tet = std::array<Index, 4>;
+  struct Tet {
+    std::array<Index, 4> corners;
+    int due;  ///< bisections
+  };
+
+  /// Until `is_wanted` holds for no tetrahedron, and none has a vertex in the middle of an edge.
+  template <class IsWanted>
+  void bisect_while(IsWanted&& is_wanted) {
+    for (bool changed = true; changed;) {
+      changed = false;
+      std::vector<Tet> next;
+      next.reserve(2 * tets_.size());
+      for (const Tet& tet : tets_) {
+        if (!is_wanted(tet) && !has_hanging_vertex(tet)) {
+          next.push_back(tet);
+          continue;
+        }
+        changed = true;
+        const auto [a, b] = longest_edge(tet);
+        const Index middle = number(midpoint(tet.corners[a], tet.corners[b]));
+        for (const int replaced : {b, a}) {
+          next.push_back(tet);
+          next.back().corners[replaced] = middle;
+          --next.back().due;
+        }
+      }
+      tets_ = std::move(next);
+    }
+  }
 
   static std::uint64_t key(const Place& at) {
     std::uint64_t key = 0;
@@ -109,7 +128,8 @@ class Bisection {
     std::int64_t most = 0;
     for (int a = 0; a < 4; ++a)
       for (int b = a + 1; b < 4; ++b)
-        if (const std::int64_t length = squared_length(tet[a], tet[b]); length > most) {
+        if (const std::int64_t length = squared_length(tet.corners[a], tet.corners[b]);
+            length > most) {
           most = length;
           longest = {a, b};
         }
@@ -122,7 +142,7 @@ class Bisection {
       distance = std::max(
           distance, std::abs(static_cast<double>(x) / static_cast<double>(kSide) - finest_at_));
     const double share = distance / (1 - finest_at_);
-    const double limit = std::ldexp(kFine + (kCoarse - kFine) * share, -level_);
+    const double limit = kFine + (kCoarse - kFine) * share;
     return static_cast<double>(squared_length(a, b)) >
            limit * limit * static_cast<double>(kSide) * static_cast<double>(kSide);
   }
@@ -130,12 +150,11 @@ class Bisection {
   bool has_hanging_vertex(const Tet& tet) const {
     for (int a = 0; a < 4; ++a)
       for (int b = a + 1; b < 4; ++b)
-        if (numbers_.contains(key(midpoint(tet[a], tet[b])))) return true;
+        if (numbers_.contains(key(midpoint(tet.corners[a], tet.corners[b])))) return true;
     return false;
   }
 
   double finest_at_;
-  int level_;
   std::vector<Tet> tets_;
   std::vector<Place> places_;
   std::unordered_map<std::uint64_t, Index> numbers_;
@@ -147,11 +166,12 @@ class Bisection {
 /// 0) of the cube, or from the centre of the ball, than there.
 PolyhedralMesh generate_volume_tets_adaptive(const VolumeDomain& domain,
                                              const FamilyOptions& options) {
-  constexpr double kCornersPerCube = 10000;  // at level 0
+  constexpr double kCornersPerCube = 306 * 12;  // at level 0
   volume_lattice_size(options.level, 1, kCornersPerCube);
-  Bisection tets(domain.finest_at, options.level);
+  Bisection tets(domain.finest_at);
   tets.start();
-  tets.refine();
+  tets.grade();
+  tets.halve(options.level);
   return finish_volume(tets.build(domain, options.anisotropy), domain, options);
 }
 
