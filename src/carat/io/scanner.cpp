@@ -95,7 +95,7 @@ void Scanner::skip_line() {
 std::string_view Scanner::word() {
   if (at_line_end()) return {};
   const char* first = at_;
-  while (at_ != end_ && !is_blank(*at_) && *at_ != '\n') ++at_;
+  while (at_ != end_ && !is_blank(*at_) && *at_ != '\n' && !is_delimiter(*at_)) ++at_;
   return {first, static_cast<std::size_t>(at_ - first)};
 }
 
@@ -113,7 +113,8 @@ double Scanner::number() {
   if (*first == '+' && first + 1 != end_ && first[1] != '-') ++first;
   double value = 0;
   const auto [stop, status] = std::from_chars(first, end_, value);
-  const bool ends = stop == end_ || is_blank(*stop) || *stop == '\n' || *stop == syntax_.comment;
+  const bool ends = stop == end_ || is_blank(*stop) || *stop == '\n' || *stop == syntax_.comment ||
+                    is_delimiter(*stop);
   if (status == std::errc::invalid_argument || !ends)
     fail(in_quotes(word()) + " is not a number; correct it");
   if (status == std::errc::result_out_of_range) value = saturated(first, stop);
@@ -134,8 +135,8 @@ std::int64_t Scanner::integer() {
   if (*first == '+' && first + 1 != end_ && first[1] != '-') ++first;
   std::int64_t value = 0;
   const auto [stop, status] = std::from_chars(first, end_, value);
-  const bool ends =
-      stop == end_ || is_blank(*stop) || *stop == '\n' || *stop == '/' || *stop == syntax_.comment;
+  const bool ends = stop == end_ || is_blank(*stop) || *stop == '\n' || *stop == '/' ||
+                    *stop == syntax_.comment || is_delimiter(*stop);
   if (status != std::errc() || !ends)
     fail(in_quotes(word()) + " is not a whole number (or too large); correct it");
   at_ = stop;

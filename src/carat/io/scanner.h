@@ -28,8 +28,9 @@ inline bool is_integer(NumberType type) { return type < NumberType::Float32; }
 
 /// What a text format allows.
 struct ScannerSyntax {
-  char comment = '\0';        ///< starts a comment that ends with the line; 0: none
-  bool continuation = false;  ///< a backslash before the end of a line joins it to the next
+  char comment = '\0';            ///< starts a comment that ends with the line; 0: none
+  bool continuation = false;      ///< a backslash before the end of a line joins it to the next
+  std::string_view delimiters{};  ///< end a word or number like a blank, but are content
 };
 
 /// A position in a file's content. Lines end with LF or CRLF. Numbers are correctly rounded
@@ -47,6 +48,7 @@ class Scanner {
   bool to_content();
   /// Skips blanks. True if the line (or the file) ends here, or a comment starts.
   bool at_line_end();
+  void skip_bytes(std::size_t n) { at_ += n < remaining() ? n : remaining(); }
   /// Moves behind the next line end.
   void skip_line();
   /// The characters up to the next blank or line end, which must lie in this line ("" if none).
@@ -88,6 +90,7 @@ class Scanner {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
+  bool is_delimiter(char c) const { return syntax_.delimiters.find(c) != std::string_view::npos; }
   template <class T>
   T binary();
   template <class T>
