@@ -12,6 +12,7 @@ void CellForm::reset(const VolumeIncidence& mesh) {
 }
 
 void assemble_cell_form(SparseMatrix& matrix, bool lumped, const VolumeIncidence& mesh,
+                        const Csr& vertex_corners, const Array<Index>& corner_faces,
                         const Array<double>& face_weights, const Array<double>& cell_weights,
                         const CellForm& form, int threads) {
   const auto both = [](const Array<double>& sides, Index k) {
@@ -35,8 +36,8 @@ void assemble_cell_form(SparseMatrix& matrix, bool lumped, const VolumeIncidence
         for (Index k = mesh.cell_vertices.begin(c); k < mesh.cell_vertices.end(c); ++k)
           add(mesh.cell_vertices.indices[k], own * cell_weights[k] + weight * form.tip[k]);
       }
-      for (const Index corner : mesh.vertex_corners.row(row)) {
-        const Index f = mesh.corner_faces[corner];
+      for (const Index corner : vertex_corners.row(row)) {
+        const Index f = corner_faces[corner];
         const FaceCells cells = mesh.face_cells[f];
         if (cells.below < 0 && cells.above < 0) continue;  // its vertices may share no cell
         const Index first = mesh.faces.begin(f), last = mesh.faces.end(f);

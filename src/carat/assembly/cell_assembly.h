@@ -80,8 +80,10 @@ class CellFormFiller {
 
 /// Fills `matrix`, whose pattern is cell_pattern(mesh), with P^T A P; into a diagonal pattern
 /// (`lumped`) go the row sums.
+/// \param vertex_corners  vertex -> corners of faces; \param corner_faces  corner -> face
 /// \param face_weights  corner -> affine weight; \param cell_weights  cell corner -> affine weight
 void assemble_cell_form(SparseMatrix& matrix, bool lumped, const VolumeIncidence& mesh,
+                        const Csr& vertex_corners, const Array<Index>& corner_faces,
                         const Array<double>& face_weights, const Array<double>& cell_weights,
                         const CellForm& form, int threads);
 

@@ -43,10 +43,10 @@ void fill_cells(const VolumeIncidence& mesh, const CellRings& rings,
 }
 
 void fill_rows(SparseMatrix& stiffness_matrix, SparseMatrix& mass_matrix, bool lumped_mass,
-               const VolumeIncidence& mesh, const CellRings& rings,
-               const Array<double>& face_weights, const Array<double>& cell_weights, Index begin,
-               Index end, const VolumeDiamondWorkspace& values,
-               VolumeDiamondWorkspace::Thread& scratch) {
+               const VolumeIncidence& mesh, const CellRings& rings, const Csr& vertex_corners,
+               const Array<Index>& corner_faces, const Array<double>& face_weights,
+               const Array<double>& cell_weights, Index begin, Index end,
+               const VolumeDiamondWorkspace& values, VolumeDiamondWorkspace::Thread& scratch) {
   for (Index row = begin; row < end; ++row) {
     const RowWriter stiffness(stiffness_matrix, row, scratch.stiffness_position);
     const RowWriter mass(mass_matrix, row, scratch.mass_position);
@@ -69,8 +69,8 @@ void fill_rows(SparseMatrix& stiffness_matrix, SparseMatrix& mass_matrix, bool l
       else
         for (Index k = 0; k < n; ++k) mass.add(vertices[k], mass_weight * weights[k]);
     }
-    for (const Index corner : mesh.vertex_corners.row(row)) {
-      const Index f = mesh.corner_faces[corner];
+    for (const Index corner : vertex_corners.row(row)) {
+      const Index f = corner_faces[corner];
       const FaceCells cells = mesh.face_cells[f];
       if (cells.below < 0 && cells.above < 0) continue;
       const Index first = mesh.faces.begin(f), last = mesh.faces.end(f);
@@ -104,6 +104,7 @@ void fill_rows(SparseMatrix& stiffness_matrix, SparseMatrix& mass_matrix, bool l
 
 void assemble_volume_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_mass,
                               const VolumeIncidence& mesh, const CellRings& rings,
+                              const Csr& vertex_corners, const Array<Index>& corner_faces,
                               const Array<double>& face_weights, const Array<double>& cell_weights,
                               int threads, VolumeDiamondWorkspace& workspace) {
   const Index n_vertices = mesh.n_vertices(), n_cells = mesh.cells.n_rows();
@@ -118,8 +119,8 @@ void assemble_volume_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool 
     VolumeDiamondWorkspace::Thread& scratch = workspace.threads[static_cast<std::size_t>(block)];
     scratch.stiffness_position.resize(static_cast<std::size_t>(n_vertices));
     scratch.mass_position.resize(static_cast<std::size_t>(n_vertices));
-    fill_rows(stiffness, mass, lumped_mass, mesh, rings, face_weights, cell_weights, begin, end,
-              workspace, scratch);
+    fill_rows(stiffness, mass, lumped_mass, mesh, rings, vertex_corners, corner_faces, face_weights,
+              cell_weights, begin, end, workspace, scratch);
   });
 }
 

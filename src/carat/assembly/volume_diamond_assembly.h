@@ -45,9 +45,11 @@ struct VolumeDiamondWorkspace {
 
 /// Fills `stiffness` and `mass`, whose patterns are those of diamond_patterns(mesh, rings) (the
 /// mass may be diagonal: then with the row sums), from workspace.corners and workspace.faces.
+/// \param vertex_corners  vertex -> corners of faces; \param corner_faces  corner -> face
 /// \param face_weights  corner -> affine weight; \param cell_weights  cell corner -> affine weight
 void assemble_volume_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_mass,
                               const VolumeIncidence& mesh, const CellRings& rings,
+                              const Csr& vertex_corners, const Array<Index>& corner_faces,
                               const Array<double>& face_weights, const Array<double>& cell_weights,
                               int threads, VolumeDiamondWorkspace& workspace);
 

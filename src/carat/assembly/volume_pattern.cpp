@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include "carat/assembly/pattern.h"
-#include "carat/assembly/row_pattern.h"
 #include "carat/base/error.h"
 
 namespace carat {
@@ -116,27 +114,10 @@ SparseMatrix cell_pattern(const VolumeIncidence& mesh, int threads) {
 
 VolumeDiamondPatterns diamond_patterns(const VolumeIncidence& mesh, const CellRings& rings,
                                        int threads) {
-  Array<Index> sizes, mass_sizes;
-  const Index n = mesh.n_vertices();
-  const std::vector<CollectedRows> rows =
-      collect_rows(n, threads, sizes, mass_sizes, [&](Index row, RowCollector& out) {
-        const std::size_t before = out.columns.size();
-        const std::span<const Index> corners = mesh.vertex_cell_corners.row(row);
-        for (const Index corner : corners)
-          for (const Index v : mesh.cell_vertices.row(mesh.corner_cells[corner])) out.add(v, row);
-        const std::size_t own = out.columns.size() - before;
-        for (const Index corner : corners) {
-          const Index c = mesh.corner_cells[corner];
-          for (std::int64_t k = rings.ring_offsets[c]; k < rings.ring_offsets[c + 1]; ++k)
-            out.add(rings.ring[static_cast<std::size_t>(k)], row);
-        }
-        return static_cast<Index>(own);
-      });
-  VolumeDiamondPatterns patterns{allocate_rows(n, n, sizes, "the diamond stiffness"),
-                                 allocate_rows(n, n, mass_sizes, "the diamond mass")};
-  write_transposed(rows, sizes, sizes, threads, patterns.stiffness);
-  write_transposed(rows, sizes, mass_sizes, threads, patterns.mass);
-  return patterns;
+  return diamond_patterns(mesh, threads, [&](Index c, auto&& visit) {
+    for (std::int64_t k = rings.ring_offsets[c]; k < rings.ring_offsets[c + 1]; ++k)
+      visit(rings.ring[static_cast<std::size_t>(k)]);
+  });
 }
 
 }  // namespace carat

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "carat/assembly/pattern.h"
+#include "carat/assembly/row_pattern.h"
 #include "carat/base/types.h"
 
 namespace carat {
@@ -16,8 +18,6 @@ struct VolumeIncidence {
   const Csr& cell_vertices;            ///< cell -> vertices, each once
   const Array<Index>& corner_cells;    ///< cell corner -> cell
   const Csr& vertex_cell_corners;      ///< vertex -> cell corners
-  const Array<Index>& corner_faces;    ///< corner -> face
-  const Csr& vertex_corners;           ///< vertex -> corners of faces
 
   Index n_vertices() const { return vertex_cell_corners.n_rows(); }
 };
@@ -55,5 +55,30 @@ struct VolumeDiamondPatterns {
 /// \throws InvalidMesh  2^31 entries or more
 VolumeDiamondPatterns diamond_patterns(const VolumeIncidence& mesh, const CellRings& rings,
                                        int threads);
+
+/// The same with the rings given by for_ring(c, visit), which calls visit(v) for vertices across
+/// the faces of cell c; they may repeat.
+template <class ForRing>
+VolumeDiamondPatterns diamond_patterns(const VolumeIncidence& mesh, int threads,
+                                       const ForRing& for_ring) {
+  Array<Index> sizes, mass_sizes;
+  const Index n = mesh.n_vertices();
+  const std::vector<CollectedRows> rows =
+      collect_rows(n, threads, sizes, mass_sizes, [&](Index row, RowCollector& out) {
+        const std::size_t before = out.columns.size();
+        const std::span<const Index> corners = mesh.vertex_cell_corners.row(row);
+        for (const Index corner : corners)
+          for (const Index v : mesh.cell_vertices.row(mesh.corner_cells[corner])) out.add(v, row);
+        const std::size_t own = out.columns.size() - before;
+        for (const Index corner : corners)
+          for_ring(mesh.corner_cells[corner], [&](Index v) { out.add(v, row); });
+        return static_cast<Index>(own);
+      });
+  VolumeDiamondPatterns patterns{allocate_rows(n, n, sizes, "the diamond stiffness"),
+                                 allocate_rows(n, n, mass_sizes, "the diamond mass")};
+  write_transposed(rows, sizes, sizes, threads, patterns.stiffness);
+  write_transposed(rows, sizes, mass_sizes, threads, patterns.mass);
+  return patterns;
+}
 
 }  // namespace carat

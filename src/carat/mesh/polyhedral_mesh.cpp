@@ -486,6 +486,7 @@ const Csr& PolyhedralMesh::cell_vertices() const {
     Csr result;
     result.offsets.resize(static_cast<std::size_t>(n_cells()) + 1);
     result.offsets[0] = 0;
+    result.indices.reserve(cells().indices.size() / 3 * 4);  // hexahedra: 8 vertices, 6 faces
     Array<Index> last_cell(static_cast<std::size_t>(n_vertices()), -1);
     for (Index c = 0; c < n_cells(); ++c) {
       for (const Index f : cell(c))

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <string>
 #include <utility>
 
@@ -41,10 +42,7 @@ void load(const PolyhedralMesh& mesh, const Points& points, const Points& face_p
   }
 }
 
-/// Where the corners of the tetrahedron's faces lie does not matter: 1/4 each.
-VirtualVertexStatus tetrahedron(const Points& points, std::span<const Index> vertices,
-                                double* weights) {
-  std::fill(weights, weights + 4, 0.25);
+VirtualVertexStatus tetrahedron_status(const Points& points, std::span<const Index> vertices) {
   const Vec3 x0 = points.row(vertices[0]).transpose();
   const Vec3 e1 = Vec3(points.row(vertices[1]).transpose()) - x0;
   const Vec3 e2 = Vec3(points.row(vertices[2]).transpose()) - x0;
@@ -80,7 +78,8 @@ void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
       const std::span<const Index> vertices = cell_vertices.row(c);
       double* const composed = result.cell_weights.data() + cell_vertices.begin(c);
       if (is_tetrahedron(mesh, c)) {
-        result.cell_status[c] = tetrahedron(points, vertices, composed);
+        std::fill(composed, composed + 4, 0.25);
+        result.cell_status[c] = tetrahedron_status(points, vertices);
       } else {
         load(mesh, points, result.face_points, moments, c, cell);
         const std::size_t n = vertices.size();
@@ -109,6 +108,16 @@ void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
       result.cell_points.row(c) = anchor + offset;
     }
   });
+}
+
+bool any_degenerate_tetrahedron(const PolyhedralMesh& mesh, const Points& points, int threads) {
+  std::atomic<bool> found = false;
+  parallel_blocks(mesh.n_cells(), threads, [&](int, Index begin, Index end) {
+    for (Index c = begin; c < end && !found; ++c)
+      if (tetrahedron_status(points, mesh.cell_vertices().row(c)) != VirtualVertexStatus::Regular)
+        found = true;
+  });
+  return found;
 }
 
 SparseMatrix prolongation_matrix(const PolyhedralMesh& mesh, const VirtualCells& virtuals) {

@@ -292,8 +292,9 @@ void VolumeBungeAssembly::update(const Points& points) {
   update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
   fill_forms();
   const auto assemble = [&](SparseMatrix& matrix, bool lumped, const CellForm& form) {
-    assemble_cell_form(matrix, lumped, incidence_, virtuals_.faces.weights, virtuals_.cell_weights,
-                       form, options_.threads);
+    assemble_cell_form(matrix, lumped, incidence_, mesh_.face_mesh().vertex_corners(),
+                       mesh_.face_mesh().corner_faces(), virtuals_.faces.weights,
+                       virtuals_.cell_weights, form, options_.threads);
   };
   assemble(result_.stiffness, false, stiffness_);
   assemble(result_.mass, options_.lumped_mass, mass_);

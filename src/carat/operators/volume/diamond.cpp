@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "carat/assembly/pattern.h"
+#include "carat/assembly/tet_diamond_assembly.h"
 #include "carat/assembly/volume_diamond_assembly.h"
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
@@ -59,6 +60,9 @@ class VolumeDiamondAssembly final : public Assembly {
   CellRings rings_;
   VirtualCells virtuals_;
   VolumeDiamondWorkspace workspace_;
+  bool tets_;  // all cells are tetrahedra and K = 1: the closed form serves
+  TetTopology tet_topology_;
+  TetDiamondWorkspace tet_workspace_;
   Vec3 origin_ = Vec3::Zero();
   Points points_;  // relative to the origin, so that no accuracy is lost far from it
 };
@@ -68,8 +72,19 @@ VolumeDiamondAssembly::VolumeDiamondAssembly(const PolyhedralMesh& mesh,
     : mesh_(mesh), options_(options), incidence_(volume_incidence(mesh_)) {
   check_cell_coefficient(options_, mesh_.n_cells());
   result_.name = "diamond";
-  rings_ = cell_rings(incidence_, options_.threads);
-  VolumeDiamondPatterns patterns = diamond_patterns(incidence_, rings_, options_.threads);
+  tets_ = !options_.coefficient && options_.cell_coefficient.size() == 0 && mesh_.n_cells() > 0;
+  for (Index c = 0; c < mesh_.n_cells() && tets_; ++c)
+    tets_ = mesh_.cells().size(c) == 4 && mesh_.cell_vertices().size(c) == 4;
+  VolumeDiamondPatterns patterns;
+  if (tets_) {
+    tet_topology_ = tet_topology(incidence_, options_.threads);
+    patterns = diamond_patterns(incidence_, tet_topology_, options_.threads);
+  } else {
+    rings_ = cell_rings(incidence_, options_.threads);
+    patterns = diamond_patterns(incidence_, rings_, options_.threads);
+    mesh_.face_mesh().vertex_corners();  // built on first use: here, not in the numeric phase
+    mesh_.face_mesh().corner_faces();
+  }
   result_.stiffness = std::move(patterns.stiffness);
   result_.mass =
       options_.lumped_mass ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
@@ -343,12 +358,24 @@ void VolumeDiamondAssembly::report() {
 
 void VolumeDiamondAssembly::update(const Points& points) {
   centre_points(points, points_, origin_);
-  update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
-  compute_faces();
+  // In closed form tetrahedra need no virtual vertices, only the gradient and reports do.
+  if (!tets_ || options_.parts != DiscretizationParts::Matrices ||
+      any_degenerate_tetrahedron(mesh_, points_, options_.threads))
+    update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
+  else
+    virtuals_ = {};
   // S = -L and M = P^T M^ P   [BBA21 (31), (32)]
-  assemble_volume_diamonds(result_.stiffness, result_.mass, options_.lumped_mass, incidence_,
-                           rings_, virtuals_.faces.weights, virtuals_.cell_weights,
-                           options_.threads, workspace_);
+  if (tets_) {
+    assemble_tet_diamonds(result_.stiffness, result_.mass, options_.lumped_mass,
+                          result_.sample_measure, incidence_, tet_topology_, points_,
+                          options_.eps_rel, options_.threads, tet_workspace_);
+  } else {
+    compute_faces();
+    assemble_volume_diamonds(result_.stiffness, result_.mass, options_.lumped_mass, incidence_,
+                             rings_, mesh_.face_mesh().vertex_corners(),
+                             mesh_.face_mesh().corner_faces(), virtuals_.faces.weights,
+                             virtuals_.cell_weights, options_.threads, workspace_);
+  }
   if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
   if (options_.parts == DiscretizationParts::Frames) collect_frames();
   report();

@@ -7,14 +7,8 @@
 namespace carat {
 
 inline VolumeIncidence volume_incidence(const PolyhedralMesh& mesh) {
-  return {mesh.face_mesh().faces(),
-          mesh.cells(),
-          mesh.face_cells(),
-          mesh.cell_vertices(),
-          mesh.corner_cells(),
-          mesh.vertex_cell_corners(),
-          mesh.face_mesh().corner_faces(),
-          mesh.face_mesh().vertex_corners()};
+  return {mesh.face_mesh().faces(), mesh.cells(),        mesh.face_cells(),
+          mesh.cell_vertices(),     mesh.corner_cells(), mesh.vertex_cell_corners()};
 }
 
 }  // namespace carat
