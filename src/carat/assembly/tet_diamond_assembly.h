@@ -27,14 +27,24 @@ TetTopology tet_topology(const VolumeIncidence& mesh, int threads);
 VolumeDiamondPatterns diamond_patterns(const VolumeIncidence& mesh, const TetTopology& tets,
                                        int threads);
 
-/// Couplings of one tetrahedron, kept between calls for their memory.
+/// Couplings of one tetrahedron.
 struct TetTerm {
   std::array<double, 6> pair;    ///< -S between vertices 01, 02, 03, 12, 13, 23, this cell's part
   std::array<double, 4> across;  ///< -S between the vertex opposite face k and the one across it
   std::array<double, 4> face_mass;  ///< M between two vertices of face k, this cell's part
   double cell_mass;                 ///< M between two vertices, of the cell's virtual vertex
+
+  /// Adds what the diamonds of face k couple.
+  /// \param place        of the face's vertices a, b, c and of the one opposite
+  /// \param ab,ac,bc     couplings within the face
+  /// \param alpha,gamma  energy 2 w alpha . (ua, ub, uc) + gamma w^2, w = u(this cell) - u(other)
+  /// \param volume       of one of the three minimal diamonds
+  void add_face(std::size_t k, const std::array<unsigned char, 4>& place, bool boundary, double ab,
+                double ac, double bc, const std::array<double, 3>& alpha, double gamma,
+                double volume);
 };
 
+/// Intermediate values, kept between calls for their memory.
 struct TetDiamondWorkspace {
   Array<TetTerm> terms;
   struct Thread {
@@ -43,11 +53,10 @@ struct TetDiamondWorkspace {
   std::vector<Thread> threads;
 };
 
-/// Fills stiffness, mass (whose pattern may be diagonal: then with the row sums) and the volumes of
-/// the minimal diamonds, one a corner of a face; 0 where degenerate (see diamond_3d).
+/// Fills stiffness and mass (whose pattern may be diagonal: then with the row sums) from
+/// workspace.terms.
 void assemble_tet_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_mass,
-                           Vector& measure, const VolumeIncidence& mesh, const TetTopology& tets,
-                           const Points& points, double eps_rel, int threads,
+                           const VolumeIncidence& mesh, const TetTopology& tets, int threads,
                            TetDiamondWorkspace& workspace);
 
 }  // namespace carat

@@ -9,6 +9,7 @@
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
 #include "carat/kernels/diamond_3d.h"
+#include "carat/kernels/tet_diamond.h"
 #include "carat/operators/common.h"
 #include "carat/operators/registry.h"
 #include "carat/operators/volume/incidence.h"
@@ -33,6 +34,8 @@ class VolumeDiamondAssembly final : public Assembly {
   void collect_columns(Index f, Array<Index>& columns) const;
 
   // Numeric.
+  void compute_tets();
+  TetFaceDiamonds tet_face(Index f, Index own, Index across, bool above) const;
   void compute_faces();
   template <class Conductivity>
   void compute_face(Index f, const Conductivity& conductivity);
@@ -210,6 +213,47 @@ void VolumeDiamondAssembly::compute_faces() {
                     [&](int, Index begin, Index end) { compute(begin, end); });
 }
 
+/// \param own, across  the vertices opposite to the face; across < 0: none
+TetFaceDiamonds VolumeDiamondAssembly::tet_face(Index f, Index own, Index across,
+                                                bool above) const {
+  // The same operations from either cell, so that both get the same bits.
+  const std::span<const Index> face = mesh_.face(f);
+  const Vec3 a = position(face[0]), b = position(face[1]), c = position(face[2]);
+  const Vec3 x_own = position(own);
+  const Vec3 x_across = across < 0 ? Vec3(a + ((b - a) + (c - a)) / 3) : position(across);
+  const Vec3 tip = 0.25 * (above ? x_own - x_across : x_across - x_own);
+  return tet_face_diamonds(a, b, c, tip, options_.eps_rel);
+}
+
+void VolumeDiamondAssembly::compute_tets() {
+  const Csr& cells = mesh_.cells();
+  const Csr& faces = mesh_.face_mesh().faces();
+  tet_workspace_.terms.resize(static_cast<std::size_t>(mesh_.n_cells()));
+  // Faces without cells; the others are overwritten.
+  result_.sample_measure.setZero();
+  parallel_blocks(mesh_.n_cells(), options_.threads, [&](int, Index begin, Index end) {
+    for (Index c = begin; c < end; ++c) {
+      TetTerm term{};
+      const Index* const vertices =
+          mesh_.cell_vertices().indices.data() + mesh_.cell_vertices().begin(c);
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Index f = cells.indices[cells.begin(c) + static_cast<Index>(k)];
+        const FaceCells sides = mesh_.face_cells()[f];
+        const bool above = sides.above == c;
+        const auto& place = tet_topology_.places[c][k];
+        const Index across = tet_topology_.across[c][k];
+        TetFaceDiamonds d = tet_face(f, vertices[place[3]], across, above);
+        if (!above)
+          for (double& alpha : d.alpha) alpha = -alpha;
+        term.add_face(k, place, across < 0, d.ab, d.ac, d.bc, d.alpha, d.gamma, d.volume);
+        if (!above || sides.below < 0)
+          result_.sample_measure.segment<3>(faces.begin(f)).setConstant(d.volume);
+      }
+      tet_workspace_.terms[c] = term;
+    }
+  });
+}
+
 void VolumeDiamondAssembly::collect_columns(Index f, Array<Index>& columns) const {
   columns.clear();
   const FaceCells cells = mesh_.face_cells()[f];
@@ -366,9 +410,9 @@ void VolumeDiamondAssembly::update(const Points& points) {
     virtuals_ = {};
   // S = -L and M = P^T M^ P   [BBA21 (31), (32)]
   if (tets_) {
-    assemble_tet_diamonds(result_.stiffness, result_.mass, options_.lumped_mass,
-                          result_.sample_measure, incidence_, tet_topology_, points_,
-                          options_.eps_rel, options_.threads, tet_workspace_);
+    compute_tets();
+    assemble_tet_diamonds(result_.stiffness, result_.mass, options_.lumped_mass, incidence_,
+                          tet_topology_, options_.threads, tet_workspace_);
   } else {
     compute_faces();
     assemble_volume_diamonds(result_.stiffness, result_.mass, options_.lumped_mass, incidence_,
