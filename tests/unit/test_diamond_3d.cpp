@@ -33,7 +33,7 @@ TEST(Diamond3d, gradient_fits_the_differences) {
   EXPECT_NEAR(fit.dot(kXl - kXr), u[3] - u[4], 1e-14);
 }
 
-TEST(Diamond3d, gradient_is_the_volume_weighted_mean_of_the_boundary_formula) {
+TEST(Diamond3d, gradient_is_the_sum_over_the_outer_triangles) {
   // [BBA21 (27)]: the gradient sums over the outer triangles of the diamond the mean of their
   // values times their outward vector area, over |D|.
   const Diamond3d d = diamond_3d(kX1, kX2, kXf, kXl, kXr, 1e-14);
