@@ -20,7 +20,8 @@ struct Options {
 
 void run(Session& session, const Options& options) {
   check_output(options.output, Content::MeshFields);
-  SurfaceData data = read_input(session, options.input);
+  SurfaceData data = read_surface_input(session, options.input, "mean curvature");
+  check_output_kind(options.output, words(data.mesh));
   const Discretization discretization =
       discretize(session, data.mesh, options.discretization, DiscretizationParts::Matrices);
   const MeanCurvature curvature = session.phase(
@@ -41,7 +42,7 @@ void run(Session& session, const Options& options) {
               (options.with_sign ? " (signed): " : " (unsigned): ") + describe_extremes(defined));
   data.fields.vertex = {scalar_field("mean_curvature", curvature.values)};
   data.fields.face.clear();
-  write_output(session, options.output, "Mean curvature", data);
+  write_output(session, options.output, "Mean curvature", std::move(data));
 }
 
 std::function<void(Session&)> declare(CLI::App& app) {
@@ -53,7 +54,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
   app.add_option("-o,--output", options->output,
                  "File for the mesh with the field mean_curvature, or a\n"
                  "view (.html); without it nothing is written");
-  declare_operator_options(app, options->discretization);
+  declare_operator_options(app, options->discretization, true);
   return [options](Session& session) { run(session, *options); };
 }
 

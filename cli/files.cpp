@@ -25,21 +25,30 @@ bool is_page(const std::string& path) {
   return extension == ".html" || extension == ".htm";
 }
 
+bool writes(const FileFormat& format) { return format.writes || format.writes_volumes; }
+
 const FileFormat* writable_format(const std::string& path) {
   const std::string extension = lower_case_extension(path);
   for (const FileFormat& format : file_formats())
-    if (format.writes)
+    if (writes(format))
       for (const std::string& known : format.extensions)
         if (known == extension) return &format;
   return nullptr;
 }
 
-std::string writable_extensions(Content content) {
+template <class Condition>
+std::string extensions(const Condition& condition) {
   std::string list;
   for (const FileFormat& format : file_formats())
-    if (format.writes && (content == Content::Mesh || format.fields))
+    if (condition(format))
       for (const std::string& extension : format.extensions) list += extension + " ";
   return list + ".html";
+}
+
+std::string writable_extensions(Content content) {
+  return extensions([&](const FileFormat& format) {
+    return writes(format) && (content == Content::Mesh || format.fields);
+  });
 }
 
 /// Positions of the least and the largest finite value, -1 without one.
@@ -55,20 +64,27 @@ std::pair<Index, Index> extreme_rows(const Vector& values) {
 
 }  // namespace
 
-SurfaceData read_input(Session& session, const std::string& path) {
+MeshData read_input(Session& session, const std::string& path) {
   session.report()["input"] = path;
-  SurfaceData data = session.phase("read", [&] { return read_surface(path); });
-  report_sizes(session, "sizes", data.mesh);
-  session.say(path + ": " + count(data.mesh.n_vertices(), "vertex") + ", " +
-              count(data.mesh.n_edges(), "edge") + ", " + count(data.mesh.n_faces(), "face"));
+  MeshData data = session.phase("read", [&] { return read_mesh(path); });
+  std::visit(
+      [&](const auto& held) {
+        session.report()["kind"] = words(held.mesh).name;
+        session.report()["sizes"] = sizes_to_json(held.mesh);
+        session.say(path + ": " + describe_sizes(held.mesh));
+      },
+      data);
   return data;
 }
 
-void report_sizes(Session& session, const char* key, const PolygonMesh& mesh) {
-  session.report()[key] = {{"vertices", mesh.n_vertices()},
-                           {"edges", mesh.n_edges()},
-                           {"faces", mesh.n_faces()},
-                           {"corners", mesh.n_corners()}};
+SurfaceData read_surface_input(Session& session, const std::string& path,
+                               const std::string& quantity) {
+  MeshData data = read_input(session, path);
+  if (std::holds_alternative<VolumeData>(data))
+    throw IoError(path + ": is a volume mesh, " + quantity +
+                  " is of surfaces; extract its boundary first: carat convert " + path +
+                  " boundary.vtp --surface");
+  return std::get<SurfaceData>(std::move(data));
 }
 
 bool carries_fields(const std::string& path) {
@@ -96,14 +112,29 @@ void check_output(const std::string& path, Content content) {
   if (fs::is_directory(path, ignored)) throw IoError(path + ": is a folder; name a file");
 }
 
+void check_output_kind(const std::string& path, const KindWords& kind) {
+  if (path.empty() || is_page(path)) return;
+  const FileFormat* const format = writable_format(path);
+  const bool volume = kind.name == kVolumeWords.name;
+  const auto ability = volume ? &FileFormat::writes_volumes : &FileFormat::writes;
+  if (format == nullptr || format->*ability) return;
+  throw InvalidOption(path + ": " + format->title + " files are not written with " + kind.plural +
+                      "; use one of " +
+                      extensions([&](const FileFormat& other) { return other.*ability; }) +
+                      (volume ? ", or the boundary alone: carat convert --surface" : ""));
+}
+
 void write_output(Session& session, const std::string& path, const std::string& title,
-                  const SurfaceData& data) {
+                  const MeshData& data) {
   if (path.empty()) return;
   session.phase("write", [&] {
     if (is_page(path)) {
       write_html_view(path, {{title, data}}, title);
+    } else if (const auto* const volume = std::get_if<VolumeData>(&data)) {
+      write_volume(path, volume->mesh, volume->fields, volume->patches);
     } else {
-      write_surface(path, data.mesh, data.fields);
+      const SurfaceData& surface = std::get<SurfaceData>(data);
+      write_surface(path, surface.mesh, surface.fields);
     }
   });
   session.report()["output"] = path;

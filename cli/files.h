@@ -4,15 +4,19 @@
 #include <string>
 
 #include "carat/io/mesh_file.h"
+#include "cli/mesh_kinds.h"
 #include "cli/session.h"
 
 namespace carat::cli {
 
-/// Reads a mesh as the phase "read" and reports its name and sizes.
-SurfaceData read_input(Session& session, const std::string& path);
+/// Reads a mesh as the phase "read" and reports its name, kind and sizes.
+MeshData read_input(Session& session, const std::string& path);
 
-/// Reports vertices, edges, faces and corners under `key`.
-void report_sizes(Session& session, const char* key, const PolygonMesh& mesh);
+/// The same for commands that know surfaces only.
+/// \param quantity  what they compute, for the message, e.g. "mean curvature"
+/// \throws IoError  a volume mesh; says how to extract its boundary
+SurfaceData read_surface_input(Session& session, const std::string& path,
+                               const std::string& quantity);
 
 /// What is in a file that is about to be written.
 enum class Content {
@@ -26,10 +30,14 @@ enum class Content {
 /// \throws InvalidOption  a format without fields where they matter
 void check_output(const std::string& path, Content content);
 
+/// Refuses a format that cannot hold this kind of mesh. To be called as soon as the kind is known.
+/// \throws InvalidOption  names the formats that can
+void check_output_kind(const std::string& path, const KindWords& kind);
+
 /// Writes a mesh with fields, or a view of it where the extension is .html, as the phase "write".
 /// An empty path writes nothing.
 void write_output(Session& session, const std::string& path, const std::string& title,
-                  const SurfaceData& data);
+                  const MeshData& data);
 
 /// Whether the format of that extension carries fields.
 bool carries_fields(const std::string& path);

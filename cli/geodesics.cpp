@@ -1,4 +1,4 @@
-// carat geodesics: distance along the surface.
+// carat geodesics: distance along a surface or through a volume.
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -31,12 +31,13 @@ void check_sources(const std::vector<Index>& sources, Index n_vertices) {
                           {v});
 }
 
-/// Unit vectors along which the distance grows, one a face; zero where it is infinite or flat.
-Field direction_field(const Discretization& discretization, Vector distance, Index n_faces) {
+/// Unit vectors along which the distance grows, one an element; zero where it is infinite or flat.
+Field direction_field(const Discretization& discretization, Vector distance, Index n_elements) {
   for (double& value : distance)
     if (!std::isfinite(value)) value = 0;
-  Points directions = discretization.element_vectors(discretization.gradient * distance, n_faces);
-  for (Index f = 0; f < n_faces; ++f) directions.row(f).normalize();
+  Points directions =
+      discretization.element_vectors(discretization.gradient * distance, n_elements);
+  directions.rowwise().normalize();
   return vector_field("direction", directions);
 }
 
@@ -55,9 +56,9 @@ void report_distance(Session& session, const GeodesicDistance& distance) {
   session.say("distance: " + describe_extremes(distance.values));
 }
 
-void run(Session& session, const Options& options) {
-  check_output(options.output, Content::MeshFields);
-  SurfaceData data = read_input(session, options.input);
+template <class Data>
+void measure(Session& session, const Options& options, Data& data) {
+  check_output_kind(options.output, words(data.mesh));
   check_sources(options.sources, data.mesh.n_vertices());
   const bool writes = !options.output.empty();
   Discretization discretization =
@@ -84,9 +85,15 @@ void run(Session& session, const Options& options) {
   report_distance(session, distance);
   if (!writes) return;
   data.fields.vertex = {scalar_field("distance", distance.values)};
-  data.fields.face = {
-      direction_field(geodesics.discretization(), distance.values, data.mesh.n_faces())};
-  write_output(session, options.output, "Geodesic distance", data);
+  element_fields(data) = {
+      direction_field(geodesics.discretization(), distance.values, n_elements(data.mesh))};
+  write_output(session, options.output, "Geodesic distance", std::move(data));
+}
+
+void run(Session& session, const Options& options) {
+  check_output(options.output, Content::MeshFields);
+  MeshData data = read_input(session, options.input);
+  std::visit([&](auto& held) { measure(session, options, held); }, data);
 }
 
 std::function<void(Session&)> declare(CLI::App& app) {
@@ -106,8 +113,8 @@ std::function<void(Session&)> declare(CLI::App& app) {
       ->capture_default_str();
   app.add_option("-o,--output", options->output,
                  "File for the mesh with the fields distance (vertices)\n"
-                 "and direction (faces), or a view (.html); without it\n"
-                 "nothing is written");
+                 "and direction (faces or cells), or a view (.html);\n"
+                 "without it nothing is written");
   declare_operator_options(app, options->discretization);
   return [options](Session& session) { run(session, *options); };
 }
@@ -116,10 +123,11 @@ std::function<void(Session&)> declare(CLI::App& app) {
 
 const Command geodesics_command = {
     "geodesics",
-    "Distance along the surface from one or several vertices",
+    "Distance along a surface or through a volume from one or several vertices",
     "The heat method. Distances have the mesh's unit of length. Vertices that no source reaches\n"
     "get an infinite distance: inf in VTP, VTU and PLY files, null in JSON.",
     "  carat geodesics bunny.obj --source 0 -o distance.html\n"
+    "  carat geodesics ball.vtu --source 0 -o distance.vtu\n"
     "  carat geodesics mesh.ply --source 12 --source 340 -o distance.vtp\n"
     "  carat geodesics mesh.ply --source 0 --t-coef 4 --edge-length mean --json\n",
     true,

@@ -5,86 +5,28 @@
 #include <limits>
 #include <memory>
 
-#include "carat/mesh/statistics.h"
 #include "cli/command.h"
 #include "cli/files.h"
+#include "cli/mesh_kinds.h"
 #include "cli/operator_options.h"
+#include "cli/statistics_report.h"
 
 namespace carat::cli {
 namespace {
 
-Json to_json(const Range& range) {
-  return {{"min", range.min}, {"mean", range.mean}, {"max", range.max}};
-}
+MeshStatistics statistics_of(const PolygonMesh& mesh) { return mesh_statistics(mesh); }
+VolumeStatistics statistics_of(const PolyhedralMesh& mesh) { return volume_statistics(mesh); }
 
-Json to_json(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
+void report_patches(Session&, const SurfaceData&) {}
 
-Json to_json(const MeshStatistics& s) {
-  Json valences = Json::object();
-  for (std::size_t k = 0; k < s.faces_of_valence.size(); ++k)
-    if (s.faces_of_valence[k] > 0) valences[std::to_string(k)] = s.faces_of_valence[k];
-  return {{"faces_of_valence", valences},
-          {"components", s.components},
-          {"closed", s.closed},
-          {"boundary_edges", s.boundary_edges},
-          {"boundary_loops", s.boundary_loops},
-          {"nonmanifold_edges", s.nonmanifold_edges},
-          {"nonmanifold_vertices", s.nonmanifold_vertices},
-          {"inconsistent_edges", s.inconsistent_edges},
-          {"unreferenced_vertices", s.unreferenced_vertices},
-          {"nonplanar_faces", s.nonplanar_faces},
-          {"nonconvex_faces", s.nonconvex_faces},
-          {"degenerate_faces", s.degenerate_faces},
-          {"duplicate_faces", s.duplicate_faces},
-          {"dropped_corners", s.dropped_corners},
-          {"euler_characteristic", s.euler_characteristic},
-          {"area", s.area},
-          {"enclosed_volume", s.closed ? Json(s.enclosed_volume) : Json(nullptr)},
-          {"edge_length", to_json(s.edge_length)},
-          {"face_area", to_json(s.face_area)},
-          {"face_quality", to_json(s.face_quality)},
-          {"bounding_box", {to_json(s.lower), to_json(s.upper)}}};
-}
-
-std::string describe(const Range& range) {
-  return text(range.min) + " to " + text(range.max) + ", mean " + text(range.mean);
-}
-
-std::string describe(const Vec3& x) {
-  return "(" + text(x.x()) + ", " + text(x.y()) + ", " + text(x.z()) + ")";
-}
-
-void say_statistics(Session& session, const MeshStatistics& s) {
-  std::string valences;
-  for (std::size_t k = 0; k < s.faces_of_valence.size(); ++k)
-    if (s.faces_of_valence[k] > 0)
-      valences += (valences.empty() ? "" : ", ") + std::to_string(s.faces_of_valence[k]) + " of " +
-                  std::to_string(k);
-  session.say("vertices a face: " + valences);
-  session.say(count(s.components, "component") + ", " +
-              (s.closed ? std::string("closed")
-                        : count(s.boundary_loops, "boundary loop") + " of " +
-                              count(s.boundary_edges, "edge")) +
-              ", Euler characteristic " + std::to_string(s.euler_characteristic));
-  session.say("area " + text(s.area) +
-              (s.closed && s.inconsistent_edges == 0
-                   ? ", enclosed volume " + text(s.enclosed_volume)
-                   : ""));
-  session.say("box " + describe(s.lower) + " to " + describe(s.upper));
-  session.say("edge length " + describe(s.edge_length));
-  session.say("face area " + describe(s.face_area));
-  session.say("face quality " + describe(s.face_quality) + " (1: regular)");
-
-  const auto say_if_any = [&](Index n, const std::string& meaning) {
-    if (n > 0) session.say("! " + std::to_string(n) + " " + meaning);
-  };
-  say_if_any(s.nonmanifold_edges, "edges of more than two faces");
-  say_if_any(s.nonmanifold_vertices, "vertices whose faces form more than one fan");
-  say_if_any(s.inconsistent_edges, "edges between faces that are turned against each other");
-  say_if_any(s.nonplanar_faces, "faces that are not planar");
-  say_if_any(s.nonconvex_faces, "faces that are not convex");
-  say_if_any(s.duplicate_faces, "faces with the vertices of a face before");
-  say_if_any(s.dropped_corners, "repeated vertices in faces, dropped on reading");
+void report_patches(Session& session, const VolumeData& data) {
+  Json& list = session.report()["patches"] = Json::array();
+  for (const BoundaryPatch& patch : data.patches) {
+    const auto n = static_cast<std::int64_t>(patch.faces.size());
+    list.push_back({{"name", patch.name}, {"type", patch.type}, {"faces", n}});
+    session.say("boundary patch " + patch.name +
+                (patch.type.empty() ? "" : " (" + patch.type + ")") + ": " + count(n, "face"));
+  }
 }
 
 /// Extremes of the finite values of a field.
@@ -110,23 +52,27 @@ Json describe_field(Session& session, const char* element, const Field& field) {
           {"not_finite", not_finite}};
 }
 
-void run(Session& session, const std::string& path) {
-  const SurfaceData data = read_input(session, path);
-  const MeshStatistics statistics =
-      session.phase("statistics", [&] { return mesh_statistics(data.mesh); });
-  session.report()["statistics"] = to_json(statistics);
-  say_statistics(session, statistics);
+Json describe_fields(Session& session, const char* element, const std::vector<Field>& fields) {
+  Json list = Json::array();
+  for (const Field& field : fields) list.push_back(describe_field(session, element, field));
+  return list;
+}
 
+template <class Data>
+void report_mesh(Session& session, Data& data) {
+  const auto statistics = session.phase("statistics", [&] { return statistics_of(data.mesh); });
+  report_statistics(session, statistics);
+  report_patches(session, data);
+  const char* const element = words(data.mesh).element;
   Json& fields = session.report()["fields"];
-  fields = {{"vertex", Json::array()}, {"face", Json::array()}};
-  for (const Field& field : data.fields.vertex)
-    fields["vertex"].push_back(describe_field(session, "vertex", field));
-  for (const Field& field : data.fields.face)
-    fields["face"].push_back(describe_field(session, "face", field));
+  fields["vertex"] = describe_fields(session, "vertex", data.fields.vertex);
+  fields[element] = describe_fields(session, element, element_fields(data));
+  discretize(session, data.mesh, {}, DiscretizationParts::Matrices);
+}
 
-  OperatorOptions options;
-  options.name = surface_operators().front()->name;
-  discretize(session, data.mesh, options, DiscretizationParts::Matrices);
+void run(Session& session, const std::string& path) {
+  MeshData data = read_input(session, path);
+  std::visit([&](auto& held) { report_mesh(session, held); }, data);
 }
 
 std::function<void(Session&)> declare(CLI::App& app) {

@@ -7,60 +7,95 @@
 #include "carat/io/mesh_file.h"
 #include "carat/operators/registry.h"
 #include "cli/command.h"
+#include "cli/mesh_kinds.h"
 
 namespace carat::cli {
 namespace {
 
 /// One line of a list: a name in a column and what it is.
 void say_entry(Session& session, std::string name, const std::string& title) {
-  name.resize(std::max<std::size_t>(name.size() + 1, 18), ' ');
+  name.resize(std::max<std::size_t>(name.size() + 1, 20), ' ');
   session.say(name + title);
+}
+
+/// The entries of one kind of meshes under its name.
+template <class Entries, class Describe>
+void list_kind(Session& session, const KindWords& kind, const Entries& entries, Json& list,
+               const Describe& describe) {
+  std::string heading = kind.plural;
+  heading[0] = static_cast<char>(heading[0] - 'a' + 'A');
+  session.say(heading);
+  for (const auto& entry : entries) list.push_back(describe(entry, kind));
 }
 
 Json list_operators(Session& session) {
   Json list = Json::array();
-  for (const SurfaceOperator* entry : surface_operators()) {
-    const OperatorClaims& claims = entry->claims;
-    say_entry(session, entry->name, std::string(entry->title) + " [" + entry->citation + "]");
-    list.push_back({{"name", entry->name},
-                    {"title", entry->title},
-                    {"citation", entry->citation},
-                    {"default", entry == surface_operators().front()},
-                    {"claims",
-                     {{"symmetric", claims.symmetric},
-                      {"semidefinite", claims.semidefinite},
-                      {"kernel_is_constants", claims.kernel_is_constants},
-                      {"linear_precision", claims.linear_precision},
-                      {"equals_cotan_on_simplices", claims.equals_cotan_on_simplices},
-                      {"simplices_only", claims.simplices_only},
-                      {"face_local", claims.face_local}}}});
-  }
+  const auto list_all = [&](const KindWords& kind, const auto& operators) {
+    list_kind(session, kind, operators, list,
+              [&](const auto* entry, const KindWords& words) -> Json {
+                const OperatorClaims& claims = entry->claims;
+                say_entry(session, std::string("  ") + entry->name,
+                          std::string(entry->title) + " [" + entry->citation + "]");
+                return {{"name", entry->name},
+                        {"kind", words.name},
+                        {"title", entry->title},
+                        {"citation", entry->citation},
+                        {"default", entry == operators.front()},
+                        {"claims",
+                         {{"symmetric", claims.symmetric},
+                          {"semidefinite", claims.semidefinite},
+                          {"kernel_is_constants", claims.kernel_is_constants},
+                          {"linear_precision", claims.linear_precision},
+                          {"equals_cotan_on_simplices", claims.equals_cotan_on_simplices},
+                          {"simplices_only", claims.simplices_only},
+                          {"face_local", claims.face_local}}}};
+              });
+  };
+  list_all(kSurfaceWords, surface_operators());
+  list_all(kVolumeWords, volume_operators());
   return list;
 }
 
 Json list_families(Session& session) {
   Json list = Json::array();
-  for (const FamilyEntry& entry : mesh_families()) {
-    say_entry(session, entry.name, std::string(entry.title) + " (" + entry.domain + ")");
-    list.push_back({{"name", entry.name}, {"title", entry.title}, {"domain", entry.domain}});
-  }
+  const auto describe = [&](const auto& entry, const KindWords& words) -> Json {
+    say_entry(session, std::string("  ") + entry.name,
+              std::string(entry.title) + " (" + entry.domain + ")");
+    return {{"name", entry.name},
+            {"kind", words.name},
+            {"title", entry.title},
+            {"domain", entry.domain}};
+  };
+  list_kind(session, kSurfaceWords, mesh_families(), list, describe);
+  list_kind(session, kVolumeWords, volume_families(), list, describe);
   return list;
+}
+
+std::string abilities(const std::string& meshes, bool reads, bool writes) {
+  if (!reads && !writes) return "";
+  return std::string("; ") +
+         (reads && writes ? "reads and writes "
+          : reads         ? "reads "
+                          : "writes ") +
+         meshes;
 }
 
 Json list_formats(Session& session) {
   Json list = Json::array();
   for (const FileFormat& format : file_formats()) {
-    std::string line = format.title + ":";
+    std::string line = format.title;
     for (const std::string& extension : format.extensions) line += " " + extension;
-    if (format.reads) line += ", reads";
-    if (format.writes) line += ", writes";
-    if (format.fields) line += ", with fields";
+    line += abilities("surfaces", format.reads, format.writes);
+    line += abilities("volumes", format.reads_volumes, format.writes_volumes);
+    if (format.fields) line += "; with fields";
     say_entry(session, format.name, line);
     list.push_back({{"name", format.name},
                     {"title", format.title},
                     {"extensions", format.extensions},
                     {"reads", format.reads},
                     {"writes", format.writes},
+                    {"reads_volumes", format.reads_volumes},
+                    {"writes_volumes", format.writes_volumes},
                     {"fields", format.fields}});
   }
   return list;

@@ -1,8 +1,12 @@
 #include "cli/operator_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <memory>
+
+#include "carat/base/error.h"
+#include "cli/mesh_kinds.h"
 
 namespace carat::cli {
 namespace {
@@ -41,20 +45,93 @@ DiscretizationOptions to_library(const OperatorOptions& options) {
   return result;
 }
 
+template <class Entry>
+std::vector<std::string> names(const std::vector<const Entry*>& operators) {
+  std::vector<std::string> list;
+  for (const Entry* entry : operators) list.emplace_back(entry->name);
+  return list;
+}
+
+std::string join(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+/// The operator of that name on meshes of this kind.
+template <class Mesh>
+const OperatorEntry<Mesh>& choose_operator(const Mesh& mesh, const std::string& name) {
+  const auto& operators = operators_of(mesh);
+  if (name.empty()) return *operators.front();
+  for (const OperatorEntry<Mesh>* entry : operators)
+    if (name == entry->name) return *entry;
+  throw InvalidOption("--operator " + name + ": there is none of this name for " +
+                      words(mesh).plural + "; choose one of " + join(names(operators)));
+}
+
+/// The library's message, with the option of the program as the remedy.
+DegenerateElement as_option(const DegenerateElement& error) {
+  std::string message = error.what();
+  const std::string remedy = "use DegeneratePolicy::Report to leave them out";
+  if (const std::size_t at = message.find(remedy); at != message.npos)
+    message.replace(at, remedy.size(), "leave out --strict");
+  return DegenerateElement(message, error.elements());
+}
+
+template <class Mesh>
+Discretization discretize_mesh(Session& session, const Mesh& mesh, const OperatorOptions& options,
+                               DiscretizationParts parts, const Coefficient& coefficient) {
+  const OperatorEntry<Mesh>& entry = choose_operator(mesh, options.name);
+  DiscretizationOptions library_options = to_library(options);
+  library_options.parts = parts;
+  library_options.coefficient = coefficient.function;
+  library_options.cell_coefficient = coefficient.of_cells;
+  library_options.threads = session.threads();
+  const std::unique_ptr<Assembly> assembly =
+      session.phase("symbolic", [&] { return entry.prepare(mesh, library_options); });
+  try {
+    session.phase("numeric", [&] { assembly->update(mesh.points()); });
+  } catch (const DegenerateElement& error) {
+    throw as_option(error);
+  }
+  Discretization discretization = assembly->release();
+
+  session.report()["options"] = to_json(options);
+  session.report()["options"]["operator"] = entry.name;
+  Json& nnz = session.report()["nnz"];
+  nnz["stiffness"] = discretization.stiffness.nonZeros();
+  nnz["mass"] = discretization.mass.nonZeros();
+  if (discretization.gradient_dimension > 0)
+    for (const char* const name : {"gradient", "divergence"})
+      nnz[name] = discretization.gradient.nonZeros();
+  session.report()["sizes"]["samples"] = discretization.n_samples();
+  session.report()["sizes"]["gradient_dimension"] = discretization.gradient_dimension;
+  session.say("operator " + discretization.name + ": " + count(discretization.n_vertices(), "row") +
+              ", " + std::to_string(discretization.stiffness.nonZeros()) + " stiffness entries");
+  session.add_diagnostics(discretization.diagnostics);
+  return discretization;
+}
+
 }  // namespace
 
-void declare_operator_options(CLI::App& app, OperatorOptions& options) {
-  std::vector<std::string> operators;
-  for (const SurfaceOperator* entry : surface_operators()) operators.emplace_back(entry->name);
-  options.name = operators.front();
-  app.add_option("--operator", options.name, "The discrete operator; see carat list operators")
-      ->check(CLI::IsMember(operators))
-      ->capture_default_str()
+void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surfaces_only) {
+  std::vector<std::string> choices = names(surface_operators());
+  std::string description = "The discrete operator; see carat list operators";
+  if (!surfaces_only) {
+    const std::vector<std::string> of_volumes = names(volume_operators());
+    description += ".\nSurfaces: " + join(choices) + ";\nvolumes: " + join(of_volumes);
+    for (const std::string& name : of_volumes)
+      if (std::find(choices.begin(), choices.end(), name) == choices.end()) choices.push_back(name);
+  }
+  app.add_option("--operator", options.name, description)
+      ->check(CLI::IsMember(choices))
+      ->default_str(choices.front())
       ->group("Operator");
   app.add_option("--virtual-point", options.virtual_point,
                  "Where a face's virtual vertex lies: least squared area of\n"
                  "the virtual triangles, mean of the vertices, or least\n"
-                 "trace of the stiffness")
+                 "trace of the stiffness. Of cells: least squared volume,\n"
+                 "or the mean")
       ->check(CLI::IsMember(names(kVirtualPoints)))
       ->capture_default_str()
       ->group("Operator");
@@ -75,30 +152,14 @@ void declare_operator_options(CLI::App& app, OperatorOptions& options) {
 }
 
 Discretization discretize(Session& session, const PolygonMesh& mesh, const OperatorOptions& options,
-                          DiscretizationParts parts,
-                          const std::function<double(const Vec3&)>& coefficient) {
-  DiscretizationOptions library_options = to_library(options);
-  library_options.parts = parts;
-  library_options.coefficient = coefficient;
-  library_options.threads = session.threads();
-  const std::unique_ptr<Assembly> assembly = session.phase(
-      "symbolic", [&] { return surface_operator(options.name).prepare(mesh, library_options); });
-  session.phase("numeric", [&] { assembly->update(mesh.points()); });
-  Discretization discretization = assembly->release();
+                          DiscretizationParts parts, const Coefficient& coefficient) {
+  return discretize_mesh(session, mesh, options, parts, coefficient);
+}
 
-  session.report()["options"] = to_json(options);
-  Json& nnz = session.report()["nnz"];
-  nnz["stiffness"] = discretization.stiffness.nonZeros();
-  nnz["mass"] = discretization.mass.nonZeros();
-  if (discretization.gradient_dimension > 0)
-    for (const char* const name : {"gradient", "divergence"})
-      nnz[name] = discretization.gradient.nonZeros();
-  session.report()["sizes"]["samples"] = discretization.n_samples();
-  session.report()["sizes"]["gradient_dimension"] = discretization.gradient_dimension;
-  session.say("operator " + discretization.name + ": " + count(discretization.n_vertices(), "row") +
-              ", " + std::to_string(discretization.stiffness.nonZeros()) + " stiffness entries");
-  session.add_diagnostics(discretization.diagnostics);
-  return discretization;
+Discretization discretize(Session& session, const PolyhedralMesh& mesh,
+                          const OperatorOptions& options, DiscretizationParts parts,
+                          const Coefficient& coefficient) {
+  return discretize_mesh(session, mesh, options, parts, coefficient);
 }
 
 Json to_json(const OperatorOptions& options) {

@@ -1,6 +1,7 @@
 #pragma once
 // What the commands that build operators share.
 
+#include <functional>
 #include <string>
 
 #include "carat/operators/registry.h"
@@ -13,7 +14,7 @@ class App;
 namespace carat::cli {
 
 struct OperatorOptions {
-  std::string name;
+  std::string name;  ///< empty: the default of the mesh's kind
   std::string virtual_point = "area";
   std::string weights = "in-plane";
   bool lumped = false;
@@ -22,13 +23,22 @@ struct OperatorOptions {
 };
 
 /// Declares --operator and its relatives.
-void declare_operator_options(CLI::App& app, OperatorOptions& options);
+void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surfaces_only = false);
+
+/// K in div(K grad u); empty for 1.
+struct Coefficient {
+  std::function<double(const Vec3&)> function{};
+  Matrix of_cells{};
+};
 
 /// Runs both phases and reports sizes, entries and diagnostics.
-/// \param coefficient  K, or empty for 1
+/// \throws InvalidOption      the operator is not one of this kind of mesh
+/// \throws DegenerateElement  under --strict
 Discretization discretize(Session& session, const PolygonMesh& mesh, const OperatorOptions& options,
-                          DiscretizationParts parts,
-                          const std::function<double(const Vec3&)>& coefficient = {});
+                          DiscretizationParts parts, const Coefficient& coefficient = {});
+Discretization discretize(Session& session, const PolyhedralMesh& mesh,
+                          const OperatorOptions& options, DiscretizationParts parts,
+                          const Coefficient& coefficient = {});
 
 /// The options as an object for JSON.
 Json to_json(const OperatorOptions& options);

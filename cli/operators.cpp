@@ -26,15 +26,18 @@ struct Options {
   OperatorOptions discretization;
 };
 
-const char* const kConvention =
-    "stiffness S is symmetric positive semidefinite and integrated; laplacian L = -S = D G is "
-    "negative semidefinite, pointwise M^-1 L; divergence D = -G^T M_s, M_s holding each sample's "
-    "area once a component; mass M sums to the area";
+std::string sign_convention(const KindWords& kind) {
+  const std::string measure = kind.measure;
+  return "stiffness S is symmetric positive semidefinite and integrated; laplacian L = -S = D G is "
+         "negative semidefinite, pointwise M^-1 L; divergence D = -G^T M_s, M_s holding each "
+         "sample's " +
+         measure + " once a component; mass M sums to the " + measure;
+}
 
-std::string frame_convention(Index dimension) {
+std::string frame_convention(Index dimension, const std::string& order) {
   const std::string rows = "row " + std::to_string(dimension) +
                            " s + k of the gradient is component k of sample s, counted from 0";
-  if (dimension != 2) return rows + "; components are along x, y, z";
+  if (dimension != 2) return rows + "; components are along x, y, z" + order;
   return rows +
          "; a sample lies about an edge, unfolded flat: component 0 runs along the edge from its "
          "lower to its higher vertex, component 1 points, at right angles to it, into the face "
@@ -99,7 +102,8 @@ void write_text(const fs::path& path, const std::string& content) {
 }
 
 /// Writes the matrices and names their files.
-std::vector<std::string> write_matrices(const fs::path& folder, const Discretization& d) {
+std::vector<std::string> write_matrices(const fs::path& folder, const Discretization& d,
+                                        const std::string& measure) {
   std::vector<std::string> files;
   const auto write = [&](const std::string& name, const SparseMatrix& matrix,
                          MatrixSymmetry symmetry, const std::string& comment) {
@@ -108,7 +112,7 @@ std::vector<std::string> write_matrices(const fs::path& folder, const Discretiza
   };
   write("stiffness", d.stiffness, MatrixSymmetry::Symmetric,
         d.name + " stiffness S, positive semidefinite; laplacian L = -S");
-  write("mass", d.mass, MatrixSymmetry::Symmetric, d.name + " mass M, sum = area");
+  write("mass", d.mass, MatrixSymmetry::Symmetric, d.name + " mass M, sum = " + measure);
   if (d.gradient_dimension > 0) {
     write("gradient", d.gradient, MatrixSymmetry::General, d.name + " gradient G");
     write("divergence", d.divergence(), MatrixSymmetry::General,
@@ -117,28 +121,43 @@ std::vector<std::string> write_matrices(const fs::path& folder, const Discretiza
   return files;
 }
 
-void run(Session& session, const Options& options) {
-  const SurfaceData data = read_input(session, options.input);
+/// How the samples of a gradient with components along x, y, z are numbered.
+std::string sample_order(const PolygonMesh&, const Discretization&) { return ""; }
+
+std::string sample_order(const PolyhedralMesh& mesh, const Discretization& d) {
+  if (d.n_samples() == mesh.face_mesh().n_corners())
+    return "; samples are diamonds, ordered by the faces of the mesh and then by the sides of the "
+           "face";
+  return "";
+}
+
+template <class Mesh>
+void write_operators(Session& session, const Options& options, const Mesh& mesh) {
   const TemporaryFolder folder(options.output);
   const Discretization discretization =
-      discretize(session, data.mesh, options.discretization, DiscretizationParts::Gradient);
-  std::vector<std::string> files =
-      session.phase("write", [&] { return write_matrices(folder.path(), discretization); });
-  if (discretization.gradient_dimension == 0)
-    session.note("this operator has no gradient: stiffness and mass only");
+      discretize(session, mesh, options.discretization, DiscretizationParts::Gradient);
+  const bool has_gradient = discretization.gradient_dimension > 0;
+  std::vector<std::string> files = session.phase(
+      "write", [&] { return write_matrices(folder.path(), discretization, words(mesh).measure); });
+  if (!has_gradient) session.note("this operator has no gradient: stiffness and mass only");
 
   files.push_back("operators.json");
   Json& report = session.report();
-  report["sign_convention"] = kConvention;
-  if (discretization.gradient_dimension > 0)
-    report["frame_convention"] = frame_convention(discretization.gradient_dimension);
+  report["sign_convention"] = sign_convention(words(mesh));
+  if (has_gradient)
+    report["frame_convention"] =
+        frame_convention(discretization.gradient_dimension, sample_order(mesh, discretization));
   report["output"] = options.output;
   report["files"] = files;
   write_text(folder.path() / files.back(), session.snapshot().dump(2) + "\n");
   folder.publish(files);
-  session.say(
-      "written: " + options.output + "/ with stiffness S (positive semidefinite), mass M" +
-      (discretization.gradient_dimension > 0 ? ", gradient G, divergence D: -S = D G" : ""));
+  session.say("written: " + options.output + "/ with stiffness S (positive semidefinite), mass M" +
+              (has_gradient ? ", gradient G, divergence D: -S = D G" : ""));
+}
+
+void run(Session& session, const Options& options) {
+  const MeshData data = read_input(session, options.input);
+  std::visit([&](const auto& held) { write_operators(session, options, held.mesh); }, data);
 }
 
 std::function<void(Session&)> declare(CLI::App& app) {
@@ -159,7 +178,7 @@ const Command operators_command = {
     "conventions and diagnostics. S is positive semidefinite, the laplacian is L = -S = D G.\n"
     "Of symmetric matrices the lower triangle is written, as the format has it.",
     "  carat operators bunny.obj -o operators\n"
-    "  carat operators mesh.ply --operator bunge --lumped -o operators\n"
+    "  carat operators ball.vtu --operator bunge --lumped -o operators\n"
     "  carat operators mesh.ply --virtual-point centroid --weights minimum-norm -o study\n",
     false,
     declare};

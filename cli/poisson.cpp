@@ -8,10 +8,11 @@
 #include <optional>
 
 #include "carat/base/error.h"
-#include "carat/mesh/statistics.h"
+#include "cli/boundary_data.h"
 #include "cli/command.h"
 #include "cli/expression.h"
 #include "cli/files.h"
+#include "cli/mesh_kinds.h"
 #include "cli/operator_options.h"
 
 namespace carat::cli {
@@ -19,84 +20,41 @@ namespace {
 
 struct Options {
   std::string input, output;
-  std::string rhs;
-  std::optional<std::string> dirichlet, dirichlet_where, neumann, robin, coefficient, exact;
+  std::string rhs, coefficient_field;
+  std::vector<std::string> dirichlet, neumann, robin;
+  std::optional<std::string> dirichlet_where, coefficient, exact;
   OperatorOptions discretization;
 };
 
-/// The expressions that were given, parsed before any work is done.
-struct Data {
-  Expression rhs;
-  std::optional<Expression> dirichlet, dirichlet_where, neumann, robin, coefficient, exact;
+std::optional<Expression> parse(const char* name, const std::optional<std::string>& text) {
+  return text ? std::optional<Expression>(std::in_place, name, *text) : std::nullopt;
+}
 
-  explicit Data(const Options& options) : rhs("--rhs", options.rhs) {
-    const auto parse = [](std::optional<Expression>& target, const char* name,
-                          const std::optional<std::string>& text) {
-      if (text) target.emplace(name, *text);
-    };
-    parse(dirichlet, "--dirichlet", options.dirichlet);
-    parse(dirichlet_where, "--dirichlet-where", options.dirichlet_where);
-    parse(neumann, "--neumann", options.neumann);
-    parse(robin, "--robin", options.robin);
-    parse(coefficient, "--coefficient", options.coefficient);
-    parse(exact, "--exact", options.exact);
-    if (dirichlet_where && !dirichlet)
+/// The expressions that were given, parsed before any work is done.
+struct Given {
+  Expression rhs;
+  BoundaryData boundary;
+  std::optional<Expression> coefficient, exact;
+
+  explicit Given(const Options& options)
+      : rhs("--rhs", options.rhs),
+        boundary{{"--dirichlet", options.dirichlet},
+                 {"--neumann", options.neumann},
+                 {"--robin", options.robin},
+                 parse("--dirichlet-where", options.dirichlet_where)},
+        coefficient(parse("--coefficient", options.coefficient)),
+        exact(parse("--exact", options.exact)) {
+    if (boundary.dirichlet_where && boundary.dirichlet.empty())
       throw InvalidOption("--dirichlet-where says where but not what; add --dirichlet EXPR");
   }
 };
 
-void add_dirichlet(const PolygonMesh& mesh, const Data& data, BoundaryConditions& conditions) {
-  if (!data.dirichlet) return;
-  const std::vector<bool> on_boundary = boundary_vertices(mesh);
-  for (Index v = 0; v < mesh.n_vertices(); ++v) {
-    if (!on_boundary[static_cast<std::size_t>(v)]) continue;
-    if (data.dirichlet_where && (*data.dirichlet_where)(mesh.point(v)) == 0) continue;
-    conditions.dirichlet_vertices.push_back(v);
-    conditions.dirichlet_values.push_back((*data.dirichlet)(mesh.point(v)));
-  }
-  if (conditions.dirichlet_vertices.empty())
-    throw InvalidOption(data.dirichlet_where
-                            ? "--dirichlet-where is 0 at every boundary vertex; leave --dirichlet "
-                              "out, or widen it: points are compared as they are, so allow for "
-                              "rounding, e.g. \"x < 1e-9\""
-                            : "--dirichlet: the mesh is closed, it has no boundary; leave it out");
-}
-
-/// Neumann and Robin data on the boundary edges that Dirichlet data do not cover.
-void add_fluxes(const PolygonMesh& mesh, const Data& data, BoundaryConditions& conditions) {
-  if (!data.neumann && !data.robin) return;
-  std::vector<bool> given(static_cast<std::size_t>(mesh.n_vertices()), false);
-  for (const Index v : conditions.dirichlet_vertices) given[static_cast<std::size_t>(v)] = true;
-  const EdgeTopology& edges = mesh.edges();
-  for (Index e = 0; e < edges.size(); ++e) {
-    const auto [v1, v2] = edges.vertices[static_cast<std::size_t>(e)];
-    if (edges.corners.size(e) != 1 ||
-        (given[static_cast<std::size_t>(v1)] && given[static_cast<std::size_t>(v2)]))
-      continue;
-    const Vec3 midpoint = mesh.point(v1) / 2 + mesh.point(v2) / 2;
-    const double flux = data.neumann ? (*data.neumann)(midpoint) : 0;
-    if (data.robin) {
-      conditions.robin_sides.push_back(e);
-      conditions.robin_alpha.push_back((*data.robin)(midpoint));
-      conditions.robin_g.push_back(flux);
-    } else {
-      conditions.neumann_sides.push_back(e);
-      conditions.neumann_flux.push_back(flux);
-    }
-  }
-  if (conditions.robin_sides.empty() && conditions.neumann_sides.empty())
-    throw InvalidOption(
-        std::string(data.robin ? "--robin" : "--neumann") + ": no boundary edge is left for it; " +
-        (data.dirichlet ? "every one has Dirichlet data at both ends, restrict them with "
-                          "--dirichlet-where"
-                        : "the mesh is closed, leave it out"));
-}
-
-/// Takes the mean by area off the reference in every component whose solution has mean zero.
-void remove_floating_means(const PolygonMesh& mesh, const Discretization& discretization,
+/// Takes the mean by mass off the reference in every component whose solution has mean zero.
+template <class Mesh>
+void remove_floating_means(const Mesh& mesh, const Discretization& discretization,
                            const BoundaryConditions& conditions, Vector& reference) {
   const std::vector<Index> component = matrix_components(discretization.stiffness);
-  const Vector area = discretization.lumped_mass();
+  const Vector mass = discretization.lumped_mass();
   const Index n = component.empty() ? 0 : *std::max_element(component.begin(), component.end()) + 1;
   std::vector<bool> anchored(static_cast<std::size_t>(n), false);
   const auto anchor = [&](Index v) {
@@ -106,7 +64,7 @@ void remove_floating_means(const PolygonMesh& mesh, const Discretization& discre
   for (const Index v : conditions.dirichlet_vertices) anchor(v);
   for (std::size_t k = 0; k < conditions.robin_sides.size(); ++k)
     if (conditions.robin_alpha[k] > 0)
-      anchor(mesh.edges().vertices[static_cast<std::size_t>(conditions.robin_sides[k])][0]);
+      anchor(boundary_side(mesh, conditions.robin_sides[k]).vertices[0]);
 
   std::vector<double> sum(anchored.size(), 0), total(anchored.size(), 0);
   const auto for_each_floating = [&](const auto& visit) {
@@ -116,18 +74,19 @@ void remove_floating_means(const PolygonMesh& mesh, const Discretization& discre
     }
   };
   for_each_floating([&](Index v, std::size_t c) {
-    sum[c] += area[v] * reference[v];
-    total[c] += area[v];
+    sum[c] += mass[v] * reference[v];
+    total[c] += mass[v];
   });
   for_each_floating([&](Index v, std::size_t c) { reference[v] -= sum[c] / total[c]; });
 }
 
-void compare(Session& session, const SurfaceData& data, const Discretization& discretization,
+template <class Mesh>
+void compare(Session& session, const Mesh& mesh, const Discretization& discretization,
              const BoundaryConditions& conditions, const Expression& exact, const Vector& u,
              std::vector<Field>& fields) {
-  Vector reference = exact.at(data.mesh.points());
-  remove_floating_means(data.mesh, discretization, conditions, reference);
-  // Vertices without a face take no part.
+  Vector reference = exact.at(mesh.points());
+  remove_floating_means(mesh, discretization, conditions, reference);
+  // Vertices of no element take no part.
   if (const Finding* const unused = discretization.diagnostics.find("unreferenced_vertices"))
     for (const Index v : unused->elements) reference[v] = u[v];
   const ErrorNorms errors = error_norms(discretization.mass, u, reference);
@@ -154,17 +113,29 @@ void report_solution(Session& session, const PoissonSolution& solution, const Fa
                 text(solution.imbalance) + ", subtracted");
 }
 
-void run(Session& session, const Options& options) {
-  const Data given(options);
-  check_output(options.output, Content::MeshFields);
-  SurfaceData data = read_input(session, options.input);
-  BoundaryConditions conditions;
-  add_dirichlet(data.mesh, given, conditions);
-  add_fluxes(data.mesh, given, conditions);
+void report_conditions(Session& session, const BoundaryConditions& conditions,
+                       const std::string& side) {
+  Json& sizes = session.report()["sizes"];
+  const std::string sides = side + "s";
+  sizes["dirichlet_vertices"] = conditions.dirichlet_vertices.size();
+  sizes["neumann_" + sides] = conditions.neumann_sides.size();
+  sizes["robin_" + sides] = conditions.robin_sides.size();
+  const auto number = [](const auto& list) { return static_cast<std::int64_t>(list.size()); };
+  session.say(count(number(conditions.dirichlet_vertices), "Dirichlet vertex") + ", " +
+              count(number(conditions.neumann_sides), "Neumann " + side) + ", " +
+              count(number(conditions.robin_sides), "Robin " + side));
+}
+
+template <class Data>
+void solve(Session& session, const Options& options, const Given& given, Data& data) {
+  check_output_kind(options.output, words(data.mesh));
+  const BoundaryConditions conditions = boundary_conditions(data, given.boundary);
   const Vector f = given.rhs.at(data.mesh.points());
   const bool writes = !options.output.empty();
-  std::function<double(const Vec3&)> coefficient;
-  if (given.coefficient) coefficient = *given.coefficient;
+  Coefficient coefficient;
+  if (given.coefficient) coefficient.function = *given.coefficient;
+  if (!options.coefficient_field.empty())
+    coefficient.of_cells = cell_coefficient(data, options.coefficient_field);
   const Discretization discretization =
       discretize(session, data.mesh, options.discretization,
                  writes ? DiscretizationParts::Frames : DiscretizationParts::Matrices, coefficient);
@@ -172,25 +143,26 @@ void run(Session& session, const Options& options) {
       session.phase("factor", [&] { return Poisson(data.mesh, discretization, conditions); });
   const PoissonSolution solution = session.phase("solve", [&] { return poisson.solve(f); });
 
-  session.report()["sizes"]["dirichlet_vertices"] = conditions.dirichlet_vertices.size();
-  session.report()["sizes"]["neumann_edges"] = conditions.neumann_sides.size();
-  session.report()["sizes"]["robin_edges"] = conditions.robin_sides.size();
-  session.say(
-      count(static_cast<std::int64_t>(conditions.dirichlet_vertices.size()), "Dirichlet vertex") +
-      ", " + count(static_cast<std::int64_t>(conditions.neumann_sides.size()), "Neumann edge") +
-      ", " + count(static_cast<std::int64_t>(conditions.robin_sides.size()), "Robin edge"));
+  report_conditions(session, conditions, words(data.mesh).side);
   report_solution(session, solution, poisson.info());
   data.fields.vertex = {scalar_field("u", solution.values)};
-  data.fields.face.clear();
+  element_fields(data).clear();
   if (given.exact)
-    compare(session, data, discretization, conditions, *given.exact, solution.values,
+    compare(session, data.mesh, discretization, conditions, *given.exact, solution.values,
             data.fields.vertex);
   if (!writes) return;
   const Vector gradient = discretization.gradient * solution.values;
   data.fields.vertex.push_back(vector_field("gradient", discretization.vertex_vectors(gradient)));
-  data.fields.face = {
-      vector_field("gradient", discretization.element_vectors(gradient, data.mesh.n_faces()))};
-  write_output(session, options.output, "Poisson", data);
+  element_fields(data) = {
+      vector_field("gradient", discretization.element_vectors(gradient, n_elements(data.mesh)))};
+  write_output(session, options.output, "Poisson", std::move(data));
+}
+
+void run(Session& session, const Options& options) {
+  const Given given(options);
+  check_output(options.output, Content::MeshFields);
+  MeshData data = read_input(session, options.input);
+  std::visit([&](auto& held) { solve(session, options, given, held); }, data);
 }
 
 std::function<void(Session&)> declare(CLI::App& app) {
@@ -199,17 +171,32 @@ std::function<void(Session&)> declare(CLI::App& app) {
   const auto add = [&](const char* name, auto& target, const char* description) {
     return app.add_option(name, target, description)->type_name("EXPR");
   };
+  const auto add_boundary = [&](const char* name, std::vector<std::string>& target,
+                                const char* description) {
+    app.add_option(name, target, description)->type_name("[PATCH=]EXPR")->allow_extra_args(false);
+  };
   add("--rhs", options->rhs, "f, at the vertices")->required();
-  add("--dirichlet", options->dirichlet, "u at the boundary vertices");
+  add_boundary("--dirichlet", options->dirichlet,
+               "u at the boundary vertices. With PATCH= only on this\n"
+               "boundary patch of a volume; repeat it for several, an\n"
+               "EXPR alone holds on the rest. Where patches meet, the\n"
+               "first one holds");
   add("--dirichlet-where", options->dirichlet_where,
       "Only at those boundary vertices where this is not 0,\n"
       "e.g. \"x < 0.001\"");
-  add("--neumann", options->neumann,
-      "Outward flux K du/dn at the midpoints of the other\nboundary edges; without it, 0");
-  add("--robin", options->robin,
-      "alpha >= 0: K du/dn + alpha u = g on those edges, g given\nby --neumann");
+  add_boundary("--neumann", options->neumann,
+               "Outward flux K du/dn at the middles of the other boundary\n"
+               "edges, of volumes faces; without it, 0");
+  add_boundary("--robin", options->robin,
+               "alpha >= 0: K du/dn + alpha u = g on those edges or faces,\n"
+               "g given by --neumann");
   add("--coefficient", options->coefficient,
       "K > 0, at the centroids of the gradient samples; without\nit, 1");
+  app.add_option("--coefficient-field", options->coefficient_field,
+                 "A field of the cells of a volume as K, times --coefficient:\n"
+                 "scalars, or symmetric tensors of 6 (xx yy zz xy yz xz) or\n"
+                 "9 components")
+      ->type_name("NAME");
   add("--exact", options->exact, "Compare u with this and print the error norms");
   app.add_option("-o,--output", options->output,
                  "File for the mesh with the fields u and gradient, and\n"
@@ -225,7 +212,8 @@ const Command poisson_command = {
     "poisson",
     "Solve Poisson's equation -div(K grad u) = f",
     "Without Dirichlet and Robin data u is determined up to a constant: its mean is zero, and\n"
-    "--exact is compared without its mean, in every component. Edges without data have flux 0.\n"
+    "--exact is compared without its mean, in every component. Boundary edges, of volumes faces,\n"
+    "without data have flux 0.\n"
     "Expressions know x, y, z, pi, e; + - * / ^; < <= == != >= > && ||; a ? b : c; and sin cos\n"
     "tan asin acos atan atan2 sinh cosh tanh exp ln log10 sqrt abs min max.",
     "  carat poisson plane.ply --rhs \"2*pi^2*sin(pi*x)*sin(pi*y)\" --dirichlet 0 \\\n"
@@ -233,7 +221,11 @@ const Command poisson_command = {
     "  carat poisson sphere.ply --rhs \"12*y*(4*z^2-x^2-y^2)\" -o solution.html\n"
     "  carat poisson plane.ply --rhs 0 --dirichlet 1 --dirichlet-where \"x<1e-9\" --neumann 2 \\\n"
     "        --coefficient \"1+x\" -o solution.vtp\n"
-    "  carat poisson plane.ply --rhs 1 --robin 3 --neumann \"cos(y)\" --json\n",
+    "  carat poisson plane.ply --rhs 1 --robin 3 --neumann \"cos(y)\" --json\n"
+    "  carat poisson cube.vtu --rhs \"3*pi^2*sin(pi*x)*sin(pi*y)*sin(pi*z)\" --dirichlet 0 -o "
+    "u.vtu\n"
+    "  carat poisson case --rhs 0 --dirichlet inlet=1 --dirichlet outlet=0 -o potential.html\n"
+    "  carat poisson rock.vtu --rhs 0 --dirichlet z --coefficient-field permeability -o head.vtu\n",
     true,
     declare};
 

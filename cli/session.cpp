@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <string_view>
 
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
@@ -34,12 +35,15 @@ void Session::note(const std::string& message) {
 
 void Session::add_diagnostics(const Diagnostics& diagnostics) {
   for (const Finding& finding : diagnostics.findings()) {
+    // What the mesh and an operator both find is news once.
+    const bool known = diagnostics_.contains(finding.name);
     diagnostics_[finding.name] = {{"count", finding.elements.size()},
                                   {"elements", first_elements(finding.elements)},
                                   {"meaning", finding.meaning}};
-    if (finding.elements.empty()) continue;
+    if (known || finding.elements.empty()) continue;
     std::string line =
-        "! " + std::to_string(finding.elements.size()) + " " + finding.meaning + " (";
+        "! " + describe_count(static_cast<std::int64_t>(finding.elements.size()), finding.meaning) +
+        " (";
     for (std::size_t i = 0; i < finding.elements.size() && i < 5; ++i)
       line += (i > 0 ? ", " : "") + std::to_string(finding.elements[i]);
     say(line + (finding.elements.size() > 5 ? ", ...)" : ")"));
@@ -101,6 +105,22 @@ std::string count(std::int64_t n, const std::string& noun) {
   if (noun.ends_with("vertex"))
     return std::to_string(n) + " " + noun.substr(0, noun.size() - 2) + "ices";
   return std::to_string(n) + " " + noun + "s";
+}
+
+std::string describe_count(std::int64_t n, std::string what) {
+  constexpr std::pair<std::string_view, std::string_view> forms[] = {
+      {"vertices", "vertex"},    {"edges", "edge"},
+      {"faces", "face"},         {"cells", "cell"},
+      {"samples", "sample"},     {"diamonds", "diamond"},
+      {"triangles", "triangle"}, {"tetrahedra", "tetrahedron"}};
+  if (n == 1) {
+    const auto noun = std::min_element(
+        std::begin(forms), std::end(forms),
+        [&](const auto& a, const auto& b) { return what.find(a.first) < what.find(b.first); });
+    if (const std::size_t at = what.find(noun->first); at != std::string::npos)
+      what.replace(at, noun->first.size(), noun->second);
+  }
+  return std::to_string(n) + " " + what;
 }
 
 Json first_elements(const std::vector<Index>& elements) {

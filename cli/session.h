@@ -79,6 +79,8 @@ void print_json(const Json& object);
 std::string text(double value);
 /// "1 face", "2 faces".
 std::string count(std::int64_t n, const std::string& noun);
+/// "2 faces of one cell", "1 face of one cell": the first noun follows the number.
+std::string describe_count(std::int64_t n, std::string what);
 /// The first hundred entries: enough to find the spot, small enough to read.
 Json first_elements(const std::vector<Index>& elements);
 

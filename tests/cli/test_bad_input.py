@@ -58,7 +58,6 @@ class Usage(CaratTest):
             ("2*y+q", ["character 5", '"q"']),
             ("x+", ["character 3", "unexpected end"]),
             ("", "empty"),
-            ("x=1", ["character 2", '"=="']),
             ("x,y", "2 expressions"),
             ("x # y", "character 3"),
             ("log(-1-x)", "is nan at (0, 0, 0)"),
@@ -73,6 +72,19 @@ class Usage(CaratTest):
                     words = [says] if isinstance(says, str) else says
                     self.fail_with(2, "poisson", "mesh.ply", *others, option, text,
                                    says=[option, *words])
+
+    def test_assignments(self):
+        for option in ["--rhs", "--exact"]:
+            others = [] if option == "--rhs" else ["--rhs", "1", "--dirichlet", "0"]
+            self.fail_with(2, "poisson", "mesh.ply", *others, option, "x=1",
+                           says=[option, "character 2", '"=="'])
+        for option in ["--dirichlet", "--neumann", "--robin"]:
+            self.fail_with(2, "poisson", "mesh.ply", "--rhs", "0", option, "x=1",
+                           says=[option + " x=", "no boundary patch", "'=='"])
+            self.fail_with(2, "poisson", "mesh.ply", "--rhs", "0", option, "=1", says="PATCH=EXPR")
+            self.fail_with(2, "poisson", "mesh.ply", "--rhs", "0", option, "1", option, "2",
+                           says=[option, "given twice"])
+        self.succeed("poisson", "mesh.ply", "--rhs", "0", "--dirichlet", "x<=0.5 ? x==0 : x>=1")
 
     def test_boundary_data_that_do_nothing(self):
         self.generate("sphere-quads", 0, "sphere.ply")
@@ -173,12 +185,6 @@ class Meshes(CaratTest):
                     "1000000000000")
         self.refuse("huge.off", "OFF\n1000000000000 1 0\n0 0 0\n", "1000000000000")
 
-    def test_volume(self):
-        self.refuse("volume.vtk",
-                    "# vtk DataFile Version 3.0\ntetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\n"
-                    "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\n"
-                    "CELL_TYPES 1\n10\n", "volume")
-
     def test_simplices_only_operator(self):
         self.generate("plane-quads", 0, "quads.ply")
         self.fail_with(3, "curvature", "quads.ply", "--operator", "cotan", says="triangle")
@@ -188,7 +194,14 @@ class Meshes(CaratTest):
         report = self.report("curvature", "flat.obj", "--operator", "bunge")
         self.assertGreater(report["diagnostics"]["excluded_samples"]["count"], 0)
         self.fail_with(3, "curvature", "flat.obj", "--operator", "bunge", "--strict",
-                       says="degenerate")
+                       says=["degenerate", "leave out --strict"])
+
+    def test_one_is_not_many(self):
+        self.write("one.obj", SQUARE + "v 9 9 9\nf 1 2 3\nf 1 3 4\nf 1 2 3\n")
+        lines = self.succeed("info", "one.obj").splitlines()
+        for line in ["! 1 edge of more than two faces", "! 1 face with the vertices of"]:
+            self.assertTrue(any(found.startswith(line) for found in lines), line)
+        self.assertTrue(any(line.startswith("! 1 vertex without a face") for line in lines))
 
 
 class Outputs(CaratTest):

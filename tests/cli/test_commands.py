@@ -5,8 +5,8 @@ import subprocess
 
 from support import PROGRAM, CaratTest, main
 
-COMMANDS = ["info", "curvature", "geodesics", "poisson", "operators", "view", "convert", "generate",
-            "list"]
+APPS = ["curvature", "geodesics", "poisson"]
+COMMANDS = ["info", *APPS, "operators", "view", "convert", "generate", "list"]
 
 
 class Help(CaratTest):
@@ -31,25 +31,48 @@ class Help(CaratTest):
 
     def test_defaults_and_choices_come_from_the_registries(self):
         operators = self.report("list", "operators")["operators"]
-        default = [o["name"] for o in operators if o["default"]]
-        self.assertEqual(default, [operators[0]["name"]])
-        for command in ["curvature", "geodesics", "poisson", "operators"]:
+        names = {kind: [o["name"] for o in operators if o["kind"] == kind]
+                 for kind in ["surface", "volume"]}
+        for kind, of_kind in names.items():
+            default = [o["name"] for o in operators if o["kind"] == kind and o["default"]]
+            self.assertEqual(default, of_kind[:1])
+        both = list(dict.fromkeys(names["surface"] + names["volume"]))
+        for command in APPS + ["operators"]:
+            choices = names["surface"] if command == "curvature" else both
             text = self.succeed(command, "--help")
-            self.assertIn(",".join(o["name"] for o in operators), text)
-            self.assertIn("=" + default[0], text)
+            self.assertIn("{" + ",".join(choices) + "}=" + choices[0], text)
 
 
 class List(CaratTest):
     def test_lists(self):
-        names = {what: [entry["name"] for entry in self.report("list", what)[what]]
+        lists = {what: self.report("list", what)[what]
                  for what in ["operators", "families", "formats", "apps"]}
-        self.assertEqual(names["operators"], ["diamond", "bunge", "cotan"])
-        self.assertIn("sphere-hexagons", names["families"])
+        names = {what: [entry["name"] for entry in entries] for what, entries in lists.items()}
+        self.assertEqual(names["operators"],
+                         ["diamond", "bunge", "cotan", "diamond", "bunge", "primal"])
+        for family in ["sphere-hexagons", "ball-voronoi"]:
+            self.assertIn(family, names["families"])
         self.assertIn("vtp", names["formats"])
-        self.assertEqual(sorted(names["apps"]), ["curvature", "geodesics", "poisson"])
-        for what, entries in names.items():
+        self.assertEqual(sorted(names["apps"]), sorted(APPS))
+        for what in ["formats", "apps"]:
             lines = self.succeed("list", what).splitlines()
-            self.assertEqual([line.split()[0] for line in lines], entries)
+            self.assertEqual([line.split()[0] for line in lines], names[what])
+
+    def test_kinds_are_grouped(self):
+        for what in ["operators", "families"]:
+            lines = self.succeed("list", what).splitlines()
+            expected = []
+            for kind in ["surface", "volume"]:
+                expected += [kind.capitalize() + "s"] + [
+                    "  " + entry["name"] for entry in self.report("list", what)[what]
+                    if entry["kind"] == kind]
+            self.assertEqual([line[:2].strip(" ") + line[2:].split()[0] if line[0] != " "
+                              else "  " + line.split()[0] for line in lines], expected)
+
+    def test_formats_of_volumes(self):
+        formats = {f["name"]: f for f in self.report("list", "formats")["formats"]}
+        self.assertTrue(formats["vtu"]["reads_volumes"] and formats["vtu"]["writes_volumes"])
+        self.assertFalse(formats["ply"]["reads_volumes"] or formats["ply"]["writes_volumes"])
 
 
 class Reports(CaratTest):

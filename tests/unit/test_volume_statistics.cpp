@@ -83,6 +83,7 @@ TEST(VolumeStatistics, GridOfCubes) {
   EXPECT_EQ(s.boundary_faces, 54);
   EXPECT_EQ(s.inner_faces, 54);
   EXPECT_EQ(s.cells_of_size, (std::vector<Index>{0, 0, 0, 0, 0, 0, 27}));
+  EXPECT_EQ(s.cells_of_kind, (std::array<Index, 5>{0, 27, 0, 0, 0}));
   EXPECT_EQ(s.all_faces.faces_of_valence, (std::vector<Index>{0, 0, 0, 0, 108}));
   EXPECT_EQ(s.components, 1);
   EXPECT_EQ(s.vertex_components, 1);
@@ -156,7 +157,7 @@ TEST(VolumeStatistics, PartsAndPinches) {
   EXPECT_EQ(s.boundary.components, 2);
   EXPECT_EQ(s.boundary.nonmanifold_edges, 1);
   EXPECT_EQ(s.boundary.nonmanifold_vertices, 1);
-  EXPECT_EQ(ids(s, "vertices_without_cells"), (std::vector<Index>{13}));
+  EXPECT_EQ(ids(s, "unreferenced_vertices"), (std::vector<Index>{13}));
 }
 
 TEST(VolumeStatistics, NamesBadCells) {
@@ -206,7 +207,7 @@ TEST(VolumeStatistics, RepairsAndLeftOvers) {
   const VolumeStatistics s = volume_statistics(PolyhedralMesh(points, faces, cells));
   EXPECT_EQ(ids(s, "merged_faces"), (std::vector<Index>{0}));
   EXPECT_EQ(ids(s, "faces_without_cells"), (std::vector<Index>{4}));
-  EXPECT_EQ(ids(s, "vertices_without_cells"), (std::vector<Index>{4}));
+  EXPECT_EQ(ids(s, "unreferenced_vertices"), (std::vector<Index>{4}));
   EXPECT_EQ(s.boundary_faces, 4);
 }
 

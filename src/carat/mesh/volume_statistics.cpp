@@ -93,6 +93,7 @@ void measure_cells(const PolyhedralMesh& mesh, VolumeStatistics& s) {
     const std::size_t size = mesh.cell(c).size();
     if (s.cells_of_size.size() <= size) s.cells_of_size.resize(size + 1, 0);
     ++s.cells_of_size[size];
+    ++s.cells_of_kind[static_cast<std::size_t>(cell_kind(mesh, c))];
 
     const auto [volume, area, diameter] = measure_cell(mesh, area_vectors, c);
     const double noise = kFlatCell * diameter * diameter * diameter;
@@ -113,7 +114,7 @@ void measure_cells(const PolyhedralMesh& mesh, VolumeStatistics& s) {
   s.volume = volumes.sum();
   s.cell_volume = volumes.range();
   s.cell_quality = qualities.range();
-  s.findings.add("inverted_cells", "inverted cells: their volume is negative", std::move(inverted));
+  s.findings.add("inverted_cells", "inverted cells, of negative volume", std::move(inverted));
   s.findings.add("flat_cells", "cells without volume", std::move(flat));
   s.findings.add("short_edges", "edges shorter than 1e-4 of the diameter of a cell at them",
                  short_edges.ids());
@@ -158,7 +159,7 @@ void count_components(const PolyhedralMesh& mesh, VolumeStatistics& s) {
   s.vertex_components = count_roots(by_vertices, mesh.n_cells());
 }
 
-std::vector<Index> vertices_without_cells(const PolyhedralMesh& mesh) {
+std::vector<Index> unreferenced_vertices(const PolyhedralMesh& mesh) {
   std::vector<Index> list;
   for (Index v = 0; v < mesh.n_vertices(); ++v)
     if (mesh.vertex_cell_corners().size(v) == 0) list.push_back(v);
@@ -189,18 +190,18 @@ VolumeStatistics volume_statistics(const PolyhedralMesh& mesh) {
   s.boundary = mesh_statistics(boundary_surface(mesh).mesh);
   count_components(mesh, s);
   measure_cells(mesh, s);
-  s.findings.add("faces_without_cells", "faces without a cell: they take no part",
-                 count_faces(mesh, s));
-  s.findings.add("vertices_without_cells", "vertices without a cell: they take no part",
-                 vertices_without_cells(mesh));
+  s.findings.add("faces_without_cells", "faces without a cell, left out", count_faces(mesh, s));
+  s.findings.add("unreferenced_vertices",
+                 "vertices without a cell: empty rows, excluded from every solve",
+                 unreferenced_vertices(mesh));
   HangingVertices hanging = hanging_vertices(mesh);
   s.hanging_vertices_complete = hanging.complete;
   s.findings.add("hanging_vertices",
-                 "hanging vertices, inside an edge or face that does not name them: cells that "
-                 "touch there are not connected",
+                 "hanging vertices, inside an edge or face of another cell that is not connected "
+                 "there",
                  std::move(hanging.vertices));
   s.findings.add("subdividing_vertices",
-                 "vertices where only two faces of a cell meet, as where finer cells adjoin",
+                 "vertices where only two faces of a cell meet: they cut one of its edges in two",
                  subdividing_vertices(mesh));
   const MeshRepairs& repairs = mesh.repairs();
   s.findings.add("turned_cells", "cells given inside out, turned on reading", repairs.turned_cells);

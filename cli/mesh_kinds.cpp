@@ -1,0 +1,69 @@
+#include "cli/mesh_kinds.h"
+
+#include <Eigen/Geometry>
+
+namespace carat::cli {
+
+std::string describe_sizes(const PolygonMesh& mesh) {
+  return count(mesh.n_vertices(), "vertex") + ", " + count(mesh.n_edges(), "edge") + ", " +
+         count(mesh.n_faces(), "face");
+}
+
+std::string describe_sizes(const PolyhedralMesh& mesh) {
+  return describe_sizes(mesh.face_mesh()) + ", " + count(mesh.n_cells(), "cell");
+}
+
+Json sizes_to_json(const PolygonMesh& mesh) {
+  return {{"vertices", mesh.n_vertices()},
+          {"edges", mesh.n_edges()},
+          {"faces", mesh.n_faces()},
+          {"corners", mesh.n_corners()}};
+}
+
+Json sizes_to_json(const PolyhedralMesh& mesh) {
+  Json sizes = sizes_to_json(mesh.face_mesh());
+  sizes["cells"] = mesh.n_cells();
+  return sizes;
+}
+
+BoundarySide boundary_side(const PolygonMesh& mesh, Index edge) {
+  const std::array<Index, 2>& ends = mesh.edges().vertices[static_cast<std::size_t>(edge)];
+  return {edge, ends, mesh.point(ends[0]) / 2 + mesh.point(ends[1]) / 2};
+}
+
+BoundarySide boundary_side(const PolyhedralMesh& mesh, Index face) {
+  const std::span<const Index> vertices = mesh.face(face);
+  const Vec3 origin = mesh.point(vertices[0]);
+  Vec3 mean = Vec3::Zero();
+  for (const Index v : vertices) mean += mesh.point(v) - origin;
+  mean /= static_cast<double>(vertices.size());
+  const auto for_triangles = [&](const auto& visit) {
+    Vec3 a = mesh.point(vertices.back()) - origin;
+    for (const Index v : vertices) {
+      const Vec3 b = mesh.point(v) - origin;
+      visit((a + b + mean) / 3, (a - mean).cross(b - mean));
+      a = b;
+    }
+  };
+  Vec3 normal = Vec3::Zero(), moment = Vec3::Zero();
+  for_triangles([&](const Vec3&, const Vec3& area) { normal += area; });
+  for_triangles([&](const Vec3& centre, const Vec3& area) { moment += normal.dot(area) * centre; });
+  const double total = normal.squaredNorm();
+  return {face, vertices, origin + (total > 0 ? Vec3(moment / total) : mean)};
+}
+
+std::vector<Index> boundary_sides(const PolygonMesh& mesh) {
+  std::vector<Index> sides;
+  for (Index e = 0; e < mesh.n_edges(); ++e)
+    if (mesh.edges().corners.size(e) == 1) sides.push_back(e);
+  return sides;
+}
+
+std::vector<Index> boundary_sides(const PolyhedralMesh& mesh) {
+  std::vector<Index> sides;
+  for (Index f = 0; f < mesh.n_faces(); ++f)
+    if (mesh.face_cells()[static_cast<std::size_t>(f)].boundary()) sides.push_back(f);
+  return sides;
+}
+
+}  // namespace carat::cli

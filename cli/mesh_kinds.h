@@ -1,0 +1,70 @@
+#pragma once
+// What commands need to know of surfaces and volumes to treat both alike.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "carat/io/mesh_file.h"
+#include "carat/operators/registry.h"
+#include "cli/session.h"
+
+namespace carat::cli {
+
+/// The words for a kind of mesh. Elements are what cells of a volume and faces of a surface are;
+/// sides, the pieces of the boundary, are faces or edges.
+struct KindWords {
+  const char* name;     ///< "surface"
+  const char* plural;   ///< "surfaces", for lists
+  const char* element;  ///< "face"
+  const char* side;     ///< "edge"
+  const char* measure;  ///< "area"
+};
+
+inline constexpr KindWords kSurfaceWords{"surface", "surfaces", "face", "edge", "area"};
+inline constexpr KindWords kVolumeWords{"volume", "volumes", "cell", "face", "volume"};
+
+inline const KindWords& words(const PolygonMesh&) { return kSurfaceWords; }
+inline const KindWords& words(const PolyhedralMesh&) { return kVolumeWords; }
+
+inline Index n_elements(const PolygonMesh& mesh) { return mesh.n_faces(); }
+inline Index n_elements(const PolyhedralMesh& mesh) { return mesh.n_cells(); }
+
+inline std::vector<Field>& element_fields(SurfaceData& data) { return data.fields.face; }
+inline std::vector<Field>& element_fields(VolumeData& data) { return data.fields.cell; }
+
+inline const std::vector<const SurfaceOperator*>& operators_of(const PolygonMesh&) {
+  return surface_operators();
+}
+inline const std::vector<const VolumeOperator*>& operators_of(const PolyhedralMesh&) {
+  return volume_operators();
+}
+
+/// Named parts of the boundary; surfaces have none.
+inline std::span<const BoundaryPatch> patches(const SurfaceData&) { return {}; }
+inline std::span<const BoundaryPatch> patches(const VolumeData& data) { return data.patches; }
+
+/// "12 vertices, 30 edges, 20 faces", of volumes also the cells.
+std::string describe_sizes(const PolygonMesh& mesh);
+std::string describe_sizes(const PolyhedralMesh& mesh);
+
+/// The same as an object for JSON.
+Json sizes_to_json(const PolygonMesh& mesh);
+Json sizes_to_json(const PolyhedralMesh& mesh);
+
+/// A side of the boundary with its vertices and its centre.
+struct BoundarySide {
+  Index id;
+  std::span<const Index> vertices;
+  Vec3 centre;
+};
+/// Midpoint of an edge.
+BoundarySide boundary_side(const PolygonMesh& mesh, Index edge);
+/// Centroid of a face, by the area of its triangles about the mean of its vertices.
+BoundarySide boundary_side(const PolyhedralMesh& mesh, Index face);
+
+/// Edges of one face, faces of one cell; ascending.
+std::vector<Index> boundary_sides(const PolygonMesh& mesh);
+std::vector<Index> boundary_sides(const PolyhedralMesh& mesh);
+
+}  // namespace carat::cli
