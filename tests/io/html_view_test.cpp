@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "carat/base/error.h"
 
@@ -30,6 +32,13 @@ class HtmlView : public testing::Test {
     Points points(4, 3);
     points << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
     return {PolygonMesh::from_faces(points, {{0, 1, 2, 3}}), {}};
+  }
+  static VolumeData tetrahedron() {
+    Points points(4, 3);
+    points << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+    CellCollector cells;
+    cells.add(CellType::Tetrahedron, std::array<Index, 4>{0, 1, 2, 3});
+    return {std::move(cells).build(points), {}, {}};
   }
   static std::string content(const fs::path& path) {
     std::ostringstream text;
@@ -81,6 +90,7 @@ TEST_F(HtmlView, KeepsFieldsThatSinglePrecisionWouldLose) {
 
 TEST_F(HtmlView, EmptyMesh) {
   EXPECT_NO_THROW(write_html_view(folder_ / "page.html", {{"nothing", SurfaceData{}}}));
+  EXPECT_NO_THROW(write_html_view(folder_ / "volume.html", {{"nothing", VolumeData{}}}));
 }
 
 TEST_F(HtmlView, RefusesFieldsThatDoNotFit) {
@@ -93,6 +103,31 @@ TEST_F(HtmlView, RefusesFieldsThatDoNotFit) {
   EXPECT_THROW(write_html_view(path, {{"square", data}}), InvalidOption);
   EXPECT_THROW(write_html_view(path, {}), InvalidOption);
   EXPECT_EQ(content(path), "before");
+}
+
+TEST_F(HtmlView, WritesVolumesBesideSurfaces) {
+  VolumeData data = tetrahedron();
+  data.fields.vertex = {{"at vertices", 1, {1, 2, 3, 4}}};
+  data.fields.cell = {{"in cells", 3, {1, 2, 3}}};
+  data.patches = {{"</wall>", "wall", {0, 2}}};
+  write_html_view(folder_ / "page.html", {{"tetrahedron", data}, {"square", square()}});
+  const std::string page = content(folder_ / "page.html");
+  EXPECT_EQ(count(page, "\"kind\":\"volume\""), 1U);
+  EXPECT_EQ(count(page, "\"kind\":\"surface\""), 1U);
+  EXPECT_EQ(count(page, "\"on\":\"cell\""), 1U);
+  EXPECT_EQ(count(page, "\\u003c/wall>"), 1U);
+}
+
+TEST_F(HtmlView, RefusesWhatDoesNotFitAVolume) {
+  VolumeData short_field = tetrahedron();
+  short_field.fields.cell = {{"two", 1, {1, 2}}};
+  EXPECT_THROW(write_html_view(folder_ / "page.html", {{"t", short_field}}), InvalidOption);
+  for (const Index face : {-1, 4}) {
+    VolumeData bad_patch = tetrahedron();
+    bad_patch.patches = {{"wall", "", {face}}};
+    EXPECT_THROW(write_html_view(folder_ / "page.html", {{"t", bad_patch}}), InvalidOption);
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "page.html"));
 }
 
 TEST_F(HtmlView, RefusesAFolderThatDoesNotExist) {

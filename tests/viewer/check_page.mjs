@@ -1,120 +1,18 @@
 // node check_page.mjs PACKAGES CHROMIUM PAGES: looks at PAGES/page.html in headless Chromium.
 // PACKAGES is a folder whose node_modules hold playwright-core.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { createRequire } from 'node:module';
-import { tmpdir } from 'node:os';
+import { readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { inflateSync } from 'node:zlib';
+import { change, decodePng, drawn, near, openBrowser, run } from './browser.mjs';
 
 const [packages, executablePath, pages] = process.argv.slice(2);
-const { chromium } = createRequire(resolve(packages, 'package.json'))('playwright-core');
 const expected = JSON.parse(readFileSync(join(pages, 'expected.json'), 'utf8'));
 const address = pathToFileURL(resolve(pages, 'page.html')).href;
-
-/** RGB rows of a PNG of 8-bit RGB or RGBA without interlacing, as browsers write it. */
-function decodePng(png) {
-  assert.equal(png.toString('latin1', 1, 4), 'PNG');
-  const width = png.readUInt32BE(16);
-  const height = png.readUInt32BE(20);
-  const channels = { 2: 3, 6: 4 }[png[25]];
-  const data = [];
-  for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at))
-    if (png.toString('latin1', at + 4, at + 8) === 'IDAT')
-      data.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
-  const raw = inflateSync(Buffer.concat(data));
-  const stride = width * channels;
-  const pixels = new Uint8Array(stride * height);
-  for (let y = 0; y < height; ++y) {
-    const filter = raw[y * (stride + 1)];
-    for (let x = 0; x < stride; ++x) {
-      const left = x >= channels ? pixels[y * stride + x - channels] : 0;
-      const up = y > 0 ? pixels[(y - 1) * stride + x] : 0;
-      const corner = x >= channels && y > 0 ? pixels[(y - 1) * stride + x - channels] : 0;
-      const guess = left + up - corner;
-      const paeth = [left, up, corner].reduce((best, value) =>
-        Math.abs(value - guess) < Math.abs(best - guess) ? value : best,
-      );
-      const prediction = [0, left, up, (left + up) >> 1, paeth][filter];
-      pixels[y * stride + x] = raw[y * (stride + 1) + 1 + x] + prediction;
-    }
-  }
-  return { width, height, channels, pixels };
-}
-
-function differs(a, i, b, j) {
-  return [0, 1, 2].some((k) => Math.abs(a.pixels[i + k] - b.pixels[j + k]) > 12);
-}
-
-/** Fraction of the pixels that differ visibly. */
-function change(a, b) {
-  assert.equal(a.pixels.length, b.pixels.length);
-  let n = 0;
-  for (let i = 0; i < a.pixels.length; i += a.channels) n += differs(a, i, b, i);
-  return n / (a.width * a.height);
-}
-
-/** Fraction of the pixels unlike the first one, which shows the background. */
-function drawn(image) {
-  let n = 0;
-  for (let i = 0; i < image.pixels.length; i += image.channels) n += differs(image, i, image, 0);
-  return n / (image.width * image.height);
-}
-
-const profile = mkdtempSync(join(tmpdir(), 'carat-viewer-'));
-const context = await chromium.launchPersistentContext(profile, {
+const { page, look, ready, readPicked, assertSilent, close } = await openBrowser(
+  packages,
   executablePath,
-  headless: true,
-  acceptDownloads: true,
-  viewport: { width: 900, height: 700 },
-  colorScheme: 'light',
-  args: [
-    '--no-sandbox',
-    '--use-gl=angle',
-    '--use-angle=swiftshader',
-    '--enable-unsafe-swiftshader',
-    '--disable-background-networking',
-    '--disable-component-update',
-    '--no-first-run',
-  ],
-});
-const page = await context.newPage();
-const complaints = [];
-const requests = [];
-page.on('console', (message) => {
-  // Software rendering is slow at reading pixels back, and says so.
-  if (!/GPU stall due to ReadPixels/.test(message.text()))
-    complaints.push(`${message.type()}: ${message.text()}`);
-});
-page.on('pageerror', (error) => complaints.push(error.message));
-page.on('request', (request) => requests.push(request.url()));
-
-/** The mesh as it is drawn now, without the controls around it. */
-async function look() {
-  await page.waitForTimeout(250);
-  const box = await page.locator('#canvas').boundingBox();
-  const clip = { x: box.x + 10, y: box.y + 10, width: box.width - 20, height: box.height - 20 };
-  return decodePng(await page.screenshot({ clip }));
-}
-
-function ready() {
-  return page.waitForFunction(
-    () => ['ready', 'failed'].includes(document.documentElement.dataset.state),
-    null,
-    { timeout: 60000 },
-  );
-}
-
-async function readPicked(name) {
-  const row = page.locator('#picked tr', { has: page.locator(`th:text-is("${name}")`) });
-  return (await row.first().locator('td').innerText()).replaceAll('−', '-');
-}
-
-function near(actual, wanted, relative) {
-  const bound = relative * Math.max(Math.abs(wanted), Number.MIN_VALUE);
-  assert.ok(Math.abs(actual - wanted) <= bound, `${actual} is not ${wanted} within ${bound}`);
-}
+);
 
 const checks = {
   async 'loads, and the title is plain text'() {
@@ -249,25 +147,8 @@ const checks = {
     assert.ok(await page.locator('#keys').isHidden());
   },
   async 'nothing was fetched and nothing complained'() {
-    const foreign = requests.filter((url) => url !== address && !/^(data|blob):/.test(url));
-    assert.deepEqual(foreign, []);
-    assert.deepEqual(complaints, []);
+    assertSilent(address);
   },
 };
 
-let nFailed = 0;
-try {
-  for (const [name, check] of Object.entries(checks)) {
-    try {
-      await check();
-      console.log(`ok      ${name}`);
-    } catch (error) {
-      ++nFailed;
-      console.log(`FAILED  ${name}\n${error.message}`);
-    }
-  }
-} finally {
-  await context.close();
-  rmSync(profile, { recursive: true, force: true });
-}
-process.exitCode = nFailed > 0 ? 1 : 0;
+await run(checks, close);

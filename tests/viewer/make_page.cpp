@@ -1,4 +1,5 @@
-// make_page FOLDER: the pages that check_page.mjs looks at, and what it should read on them.
+// make_page FOLDER: the pages that check_page.mjs and check_volumes.mjs look at, and what they
+// should read on them.
 
 #include <algorithm>
 #include <array>
@@ -113,8 +114,8 @@ PolyhedralMesh cubes(Index n) {
   return std::move(cells).build(lattice(n));
 }
 
-/// Prisms over polygons, one cell each: a hexagon, an L, and a ring with a square hole that is cut
-/// into two cells, so that sections are convex, concave, and in two parts.
+/// Prisms over polygons, one cell each: a hexagon, an L, a U, and a square between the arms of the
+/// U, so that sections are convex, concave, and in two parts.
 PolyhedralMesh prisms() {
   std::vector<std::vector<Vec2>> bases(4);
   for (int i = 0; i < 6; ++i)
@@ -148,7 +149,7 @@ PolyhedralMesh prisms() {
   return std::move(cells).build(rows);
 }
 
-/// A value that is linear in space, on a lattice of cubes, and one that is constant in each cell.
+/// On a lattice of cubes: a value that is linear in space, others at vertices, one in cells.
 VolumeData linear_cubes(Index n) {
   VolumeData data{cubes(n), {}};
   Field linear{"linear", 1, {}}, wind{"wind", 3, {}};
@@ -180,7 +181,11 @@ VolumeData linear_cubes(Index n) {
 void write_volumes(const std::filesystem::path& folder) {
   const VolumeData volume = linear_cubes(4);
   carat::write_html_view(folder / "volumes.html",
-                         {{"cubes", volume}, {"prisms", VolumeData{prisms(), {}}}}, "Volumes");
+                         {{"cubes", volume},
+                          {"prisms", VolumeData{prisms(), {}}},
+                          {"square", SurfaceData{quad_grid(4), {}}},
+                          {"empty", VolumeData{}}},
+                         "Volumes");
   std::ofstream(folder / "volumes.json")
       << nlohmann::json{{"shift", {kShift.x(), kShift.y(), kShift.z()}}};
 }

@@ -122,7 +122,7 @@ export class Clipping {
     this.level = (this.low + this.high) / 2;
     const { x, y, z } = this.view.towardsCamera;
     this.flipped = normal[0] * x + normal[1] * y + normal[2] * z < 0;
-    this.normalText.value = normal.map((k) => format(k, 4)).join(', ');
+    this.normalText.value = normal.map((k) => format(Math.round(1e4 * k) / 1e4, 4)).join(', ');
     this.update();
   }
 
@@ -224,8 +224,10 @@ export class Clipping {
     byId('clip-free').hidden = this.axis.value !== 'free';
     this.position.value = String(this.fraction);
     const { scale } = this.solid.info;
-    const height = this.base + scale * this.level;
-    this.levelText.value = format(height, digitsFor(height, scale * (this.high - this.low), 4));
+    // To about a ten-thousandth of the mesh, so that 0 is not a number like 1e-17.
+    const grain = 10 ** Math.floor(Math.log10(scale * (this.high - this.low) || 1) - 4);
+    const height = Math.round((this.base + scale * this.level) / grain) * grain;
+    this.levelText.value = format(height, digitsFor(height, 1e4 * grain, 5));
     this.position.setAttribute('aria-valuetext', this.levelText.value);
   }
 

@@ -50,6 +50,7 @@ export function heightsAlong(volume: Volume, normal: [number, number, number]): 
       if (faceHigh > highest) highest = faceHigh;
     }
   }
+  if (nCells === 0) lowest = highest = 0;
   return { normal, vertices, centres, low, high, lowest, highest };
 }
 
@@ -70,7 +71,7 @@ export interface Section {
   area: number;
 }
 
-/** The points of a cell's section, and its sides: from where a face goes down to where it goes up. */
+/** A cell's section: points, and sides from where a face goes down to where it goes up. */
 class CellSection {
   /** Vertices below and not below the plane that a point lies between. */
   readonly below: number[] = [];
@@ -264,7 +265,8 @@ class Cutter {
       this.from.push(this.cell.below[points[i]]);
       this.to.push(this.cell.above[points[i]]);
       this.fraction.push(this.fractionOf(points[i]));
-      if (this.drawsLine(c, faces[i])) this.lines.push(begin + i, begin + ((i + 1) % points.length));
+      if (this.drawsLine(c, faces[i]))
+        this.lines.push(begin + i, begin + ((i + 1) % points.length));
     }
     return corners;
   }

@@ -215,7 +215,8 @@ export class Solid implements Shape {
       if (!skin) continue;
       const { x, y, z, w } = uniforms.plane.value;
       const drawn = placedCorners(skin, this.volume.cellCentres, this.apart);
-      const hit = pickSkin(skin, drawn, origin, ray, (at) => x * at[0] + y * at[1] + z * at[2] <= w);
+      const kept = (at: number[]): boolean => x * at[0] + y * at[1] + z * at[2] <= w;
+      const hit = pickSkin(skin, drawn, origin, ray, kept);
       if (hit && (!nearest || hit.distance < nearest.hit.distance)) nearest = { hit, skin };
     }
     return nearest ? this.pickOf(nearest.hit, nearest.skin) : null;
