@@ -2,10 +2,9 @@
 // registries. Exclusions are listed with their reason.
 
 #include <cstdio>
-#include <map>
-#include <set>
 
 #include "support/claim_cases.h"
+#include "support/registered_cases.h"
 
 namespace carat::test {
 namespace {
@@ -24,28 +23,6 @@ constexpr Exclusion kExclusions[] = {
     {"cotan", "sphere-quads", kTrianglesOnly},   {"cotan", "sphere-hexagons", kTrianglesOnly},
     {"cotan", "sphere-concave", kTrianglesOnly},
 };
-
-/// Registered tests of a claim, "Suite.test" -> number of cases; repeated names would hide cases.
-std::map<std::string, int> registered_cases() {
-  std::map<std::string, int> counts;
-  std::set<std::string> names;
-  const testing::UnitTest& all = *testing::UnitTest::GetInstance();
-  for (int s = 0; s < all.total_test_suite_count(); ++s) {
-    const testing::TestSuite& suite = *all.GetTestSuite(s);
-    if (std::string(suite.name()).rfind("Claims/", 0) != 0) continue;
-    for (int t = 0; t < suite.total_test_count(); ++t) {
-      const testing::TestInfo& info = *suite.GetTestInfo(t);
-      const std::string test = info.name();
-      const std::string claim =
-          std::string(suite.name()).substr(std::string(suite.name()).find('/') + 1) + "." +
-          test.substr(0, test.find('/'));
-      ++counts[claim];
-      EXPECT_TRUE(names.insert(claim + test).second) << test << " is there twice";
-      EXPECT_EQ(test.find("DISABLED"), std::string::npos) << test;
-    }
-  }
-  return counts;
-}
 
 TEST(CaseCounts, exclusions_are_the_listed_ones) {
   std::set<std::pair<std::string, std::string>> listed, found;
@@ -93,7 +70,7 @@ TEST(CaseCounts, every_claim_runs_on_every_case) {
       {"GeodesicsFull.unit_sphere", 2 * sphere_pairs},
       {"GeodesicsFull.unit_sphere_with_a_long_time_step", 2 * sphere_pairs},
   };
-  EXPECT_EQ(registered_cases(), expected);
+  EXPECT_EQ(registered_cases("Claims"), expected);
   int total = 0;
   for (const auto& [claim, count] : expected) total += count;
   RecordProperty("claim_cases", total);
