@@ -1,6 +1,8 @@
 #pragma once
 // Everything of carat::core that a program needs: meshes, operators, solvers, problems.
 
+#include "carat/apps/boundary_conditions.h"
+#include "carat/apps/eigenmodes.h"
 #include "carat/apps/heat_geodesics.h"
 #include "carat/apps/mean_curvature.h"
 #include "carat/apps/poisson.h"
@@ -12,4 +14,5 @@
 #include "carat/mesh/statistics.h"
 #include "carat/mesh/transform.h"
 #include "carat/operators/registry.h"
+#include "carat/solve/eigen_solver.h"
 #include "carat/solve/spd_solver.h"

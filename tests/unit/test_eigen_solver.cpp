@@ -1,0 +1,220 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "carat/base/error.h"
+#include "carat/operators/registry.h"
+#include "carat/solve/eigen_solver.h"
+#include "support/meshes.h"
+
+namespace carat::test {
+namespace {
+
+// Asked of every pair, far above rounding times the ratio of the largest eigenvalue (about 1e4 of
+// the first here).
+constexpr double kResidual = 1e-9;
+
+/// Number of eigenvalues below sigma by Sylvester's law: negative pivots of S - sigma M.
+Index count_below(const SparseMatrix& s, const SparseMatrix& m, double sigma) {
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
+  factor.compute(Eigen::SparseMatrix<double>(s - sigma * m));
+  return static_cast<Index>((factor.vectorD().array() < 0).count());
+}
+
+void expect_sound(const EigenPairs& pairs, const SparseMatrix& m) {
+  const Index n = static_cast<Index>(pairs.values.size());
+  const Matrix gram = pairs.vectors.transpose() * (m * pairs.vectors);
+  EXPECT_LT((gram - Matrix::Identity(n, n)).cwiseAbs().maxCoeff(), 1e-11);
+  EXPECT_LT(pairs.residuals.maxCoeff(), kResidual);
+  for (Index k = 1; k < n; ++k) EXPECT_GE(pairs.values[k], pairs.values[k - 1]);
+}
+
+/// Nothing is missing: the pairs below the last one are as many as S - sigma M has negative pivots.
+void expect_complete(const EigenPairs& pairs, const SparseMatrix& s, const SparseMatrix& m) {
+  const Index n = static_cast<Index>(pairs.values.size());
+  const double last = pairs.values[n - 1];
+  const Index below = static_cast<Index>((pairs.values.array() < last * (1 - 1e-7)).count());
+  EXPECT_EQ(count_below(s, m, last * (1 - 1e-7)), below);
+  EXPECT_GE(count_below(s, m, last * (1 + 1e-7)), n);
+}
+
+/// Diagonal pencil of known values: M = 2, S = 2 values.
+SparseMatrix diagonal(const Vector& values) {
+  SparseMatrix a(values.size(), values.size());
+  for (Index i = 0; i < values.size(); ++i) a.insert(i, i) = values[i];
+  a.makeCompressed();
+  return a;
+}
+
+/// The 5-point stiffness of a path of n unit intervals, both ends free, with lumped mass 1.
+SparseMatrix path(Index n) {
+  SparseMatrix a(n, n);
+  for (Index i = 0; i < n; ++i) {
+    if (i > 0) a.insert(i, i - 1) = -1;
+    a.insert(i, i) = (i > 0) + (i + 1 < n);
+    if (i + 1 < n) a.insert(i, i + 1) = -1;
+  }
+  a.makeCompressed();
+  return a;
+}
+
+TEST(EigenSolver, path_has_its_closed_form_values) {
+  const Index n = 1500;
+  const SparseMatrix s = path(n), m = diagonal(Vector::Ones(n));
+  const EigenPairs pairs = smallest_eigenpairs(s, m, 20);
+  EXPECT_GT(pairs.solves, 0);
+  EXPECT_EQ(pairs.zero_modes, 1);
+  EXPECT_EQ(pairs.values[0], 0);
+  for (Index k = 1; k < 20; ++k) {
+    const double exact = 4 * std::pow(std::sin(std::numbers::pi * k / (2 * n)), 2);
+    // The condition of S is about n^2.
+    EXPECT_NEAR(pairs.values[k] / exact, 1, 1e-10) << k;
+  }
+  expect_sound(pairs, m);
+}
+
+TEST(EigenSolver, a_cluster_larger_than_any_block_is_complete) {
+  // 60 equal copies: every eigenvalue has 60 members, and no Krylov block holds them all.
+  const Index copies = 60, n = 30;
+  const SparseMatrix one = path(n);
+  SparseMatrix s(copies * n, copies * n);
+  for (Index c = 0; c < copies; ++c)
+    for (Index i = 0; i < n; ++i)
+      for (SparseMatrix::InnerIterator entry(one, i); entry; ++entry)
+        s.insert(c * n + i, c * n + static_cast<Index>(entry.col())) = entry.value();
+  s.makeCompressed();
+  std::vector<bool> fixed(static_cast<std::size_t>(copies * n), false);
+  for (Index c = 0; c < copies; ++c) fixed[c * n] = true;
+  const SparseMatrix m = diagonal(Vector::Ones(copies * n));
+  const EigenPairs pairs = smallest_eigenpairs(s, m, 80, fixed);
+  EXPECT_GT(pairs.solves, 0);
+  EXPECT_EQ(pairs.zero_modes, 0);
+  const auto exact = [&](int k) {
+    return 4 * std::pow(std::sin(std::numbers::pi * (k - 0.5) / (2 * n - 1)), 2);
+  };
+  for (Index k = 0; k < 80; ++k) EXPECT_NEAR(pairs.values[k], exact(k < 60 ? 1 : 2), 1e-12) << k;
+  expect_sound(pairs, m);
+}
+
+TEST(EigenSolver, symmetric_grids_give_complete_clusters_wherever_they_are_cut) {
+  const PolygonMesh mesh = quad_grid(30, 30);
+  const Discretization d = discretize(mesh);
+  for (const Index count : {2, 3, 7, 24, 25, 40, 51}) {
+    SCOPED_TRACE(count);
+    const EigenPairs pairs = smallest_eigenpairs(d.stiffness, d.mass, count);
+    EXPECT_GT(pairs.solves, 0);
+    expect_sound(pairs, d.mass);
+    expect_complete(pairs, d.stiffness, d.mass);
+  }
+}
+
+TEST(EigenSolver, constants_of_every_component_are_exact) {
+  const PolygonMesh mesh = two_components_with_loose_vertices();
+  const Discretization d = discretize(mesh);
+  const EigenPairs pairs = smallest_eigenpairs(d.stiffness, d.mass, 7);
+  EXPECT_EQ(pairs.zero_modes, 2);
+  EXPECT_EQ(pairs.values.head(2), Vector::Zero(2));
+  EXPECT_GT(pairs.values[2], 0);
+  const double triangle = 1 / std::sqrt(0.5);
+  const Vector first = pairs.vectors.col(0), second = pairs.vectors.col(1);
+  EXPECT_NEAR(first[0], triangle, 1e-14);
+  EXPECT_EQ(first[0], first[2]);
+  EXPECT_EQ(first[5], 0);
+  EXPECT_NEAR(second[5], 1, 1e-14);
+  EXPECT_EQ(pairs.vectors.row(3).cwiseAbs().maxCoeff(), 0) << "a vertex without a face";
+  EXPECT_EQ(smallest_eigenpairs(d.stiffness, d.mass, 1).zero_modes, 2);
+  expect_sound(pairs, d.mass);
+  EXPECT_THROW(smallest_eigenpairs(d.stiffness, d.mass, 8), InvalidOption);
+}
+
+TEST(EigenSolver, dense_and_iterative_methods_agree) {
+  const PolygonMesh mesh = quad_grid(19, 17);  // 360 vertices: above the dense limit
+  const Discretization d = discretize(mesh);
+  const EigenPairs few = smallest_eigenpairs(d.stiffness, d.mass, 12);
+  const EigenPairs all = smallest_eigenpairs(d.stiffness, d.mass, mesh.n_vertices());
+  EXPECT_GT(few.solves, 0);
+  EXPECT_EQ(all.solves, 0);
+  EXPECT_LT((few.values - all.values.head(12)).cwiseAbs().maxCoeff(), 1e-12);
+  expect_sound(all, d.mass);
+}
+
+TEST(EigenSolver, nearly_all_pairs_of_a_large_pencil_are_refused) {
+  const SparseMatrix s = path(4000), m = diagonal(Vector::Ones(4000));
+  EXPECT_THROW(smallest_eigenpairs(s, m, 3990), InvalidOption);
+}
+
+TEST(EigenSolver, scales_of_length_and_mass_do_not_matter) {
+  const Discretization d = discretize(quad_grid(22, 20));
+  const EigenPairs pairs = smallest_eigenpairs(d.stiffness, d.mass, 8);
+  for (const double scale : {1e-18, 1e18}) {
+    const EigenPairs scaled = smallest_eigenpairs(d.stiffness, SparseMatrix(scale * d.mass), 8);
+    EXPECT_LT((scaled.values * scale - pairs.values).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT(scaled.residuals.maxCoeff(), kResidual);
+  }
+}
+
+TEST(EigenSolver, results_repeat_bit_by_bit_and_signs_are_fixed) {
+  const Discretization d = discretize(quad_grid(30, 30));
+  const EigenPairs a = smallest_eigenpairs(d.stiffness, d.mass, 10);
+  const EigenPairs b = smallest_eigenpairs(d.stiffness, d.mass, 10);
+  EXPECT_EQ(a.values, b.values);
+  EXPECT_EQ(a.vectors, b.vectors);
+  for (Index k = 0; k < 10; ++k) {
+    const auto x = a.vectors.col(k);
+    const double bound = 0.6 * x.lpNorm<Eigen::Infinity>();
+    Index i = 0;
+    while (std::abs(x[i]) < bound) ++i;
+    EXPECT_GT(x[i], 0) << k;
+  }
+}
+
+TEST(EigenSolver, far_apart_eigenvalues_are_found) {
+  // Two stiff blobs that hang together by a thread: the first value is 1e-7 of the next.
+  SparseMatrix s = path(1200);
+  const Index cut = 599;
+  s.coeffRef(cut, cut) -= 1 - 1e-9;
+  s.coeffRef(cut + 1, cut + 1) -= 1 - 1e-9;
+  s.coeffRef(cut, cut + 1) = s.coeffRef(cut + 1, cut) = -1e-9;
+  const SparseMatrix m = diagonal(Vector::Ones(1200));
+  const EigenPairs pairs = smallest_eigenpairs(s, m, 6);
+  EXPECT_NEAR(pairs.values[1] / (1e-9 / 300), 1, 1e-3);
+  const double second = 4 * std::pow(std::sin(std::numbers::pi / 1200), 2);
+  EXPECT_NEAR(pairs.values[2] / second, 1, 1e-3);
+  // Solves carry the rounding of the first pair, whose inverse value is 1e7 times larger.
+  EXPECT_LT(pairs.residuals.maxCoeff(), 1e-4);
+}
+
+TEST(EigenSolver, bad_matrices_are_refused) {
+  const Discretization d = discretize(quad_grid(20, 20));
+  const Index n = d.n_vertices();
+  const SparseMatrix &s = d.stiffness, &m = d.mass;
+  for (const Index count : {-1, 0, n + 1})
+    EXPECT_THROW(smallest_eigenpairs(s, m, count), InvalidOption);
+  EXPECT_THROW(smallest_eigenpairs(s, diagonal(Vector::Ones(3)), 1), InvalidOption);
+  EXPECT_THROW(smallest_eigenpairs(s, m, 1, std::vector<bool>(3)), InvalidOption);
+  EXPECT_THROW(smallest_eigenpairs(s, m, 1, std::vector<bool>(static_cast<std::size_t>(n), true)),
+               InvalidOption);
+  SparseMatrix bad = m;
+  bad.coeffRef(7, 7) = -bad.coeff(7, 7);
+  EXPECT_THROW(smallest_eigenpairs(s, bad, 3), SolverFailure) << "negative diagonal";
+  bad = m;
+  bad.coeffRef(7, 8) = bad.coeffRef(8, 7) = 3 * m.coeff(7, 7);
+  EXPECT_THROW(smallest_eigenpairs(s, bad, 3), SolverFailure) << "indefinite pair of rows";
+  bad = m;
+  bad.coeffRef(7, 7) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(smallest_eigenpairs(s, bad, 3), SolverFailure);
+  EXPECT_THROW(smallest_eigenpairs(SparseMatrix(-s), m, 3), SolverFailure);
+  bad = s;
+  bad.coeffRef(7, 7) *= 0.5;
+  EXPECT_THROW(smallest_eigenpairs(bad, m, 3), SolverFailure) << "indefinite stiffness";
+  bad = s;
+  bad.coeffRef(7, 7) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(smallest_eigenpairs(bad, m, 3), SolverFailure);
+}
+
+}  // namespace
+}  // namespace carat::test
