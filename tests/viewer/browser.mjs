@@ -91,9 +91,18 @@ export async function openBrowser(packages, executablePath) {
   page.on('pageerror', (error) => complaints.push(error.message));
   page.on('request', (request) => requests.push(request.url()));
 
+  /** Waits until what was asked for is drawn, however slow the machine is. */
+  async function settle() {
+    await page.waitForTimeout(100);
+    await page.evaluate(
+      () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+    );
+  }
+
   /** The mesh as it is drawn now, without the controls around it. */
   async function look() {
-    await page.waitForTimeout(250);
+    await settle();
+    await page.waitForTimeout(150);
     const box = await page.locator('#canvas').boundingBox();
     const clip = { x: box.x + 10, y: box.y + 10, width: box.width - 20, height: box.height - 20 };
     return decodePng(await page.screenshot({ clip }));
@@ -124,7 +133,7 @@ export async function openBrowser(packages, executablePath) {
     assert.deepEqual(complaints, []);
   }
 
-  return { page, look, ready, readPicked, assertSilent, close };
+  return { page, settle, look, ready, readPicked, assertSilent, close };
 }
 
 /** Runs checks in order, goes on after one that fails, and sets the exit code. */

@@ -9,21 +9,21 @@ import { change, decodePng, drawn, near, openBrowser, run } from './browser.mjs'
 const [packages, executablePath, pages] = process.argv.slice(2);
 const { shift } = JSON.parse(readFileSync(join(pages, 'volumes.json'), 'utf8'));
 const address = pathToFileURL(resolve(pages, 'volumes.html')).href;
-const { page, look, ready, readPicked, assertSilent, close } = await openBrowser(
+const { page, settle, look, ready, readPicked, assertSilent, close } = await openBrowser(
   packages,
   executablePath,
 );
 
 /** Cells and area that the note on the clip tells; positions hold single precision. */
 async function cut() {
-  await page.waitForTimeout(150);
+  await settle();
   const note = await page.innerText('#clip-note');
   const [, cells, area] = note.match(/^([\d,]+) cells cut, area ([\d.]+)\.$/) ?? assert.fail(note);
   return { cells: Number(cells), area: Number(area) };
 }
 
 async function shownCells() {
-  await page.waitForTimeout(150);
+  await settle();
   const note = await page.innerText('#clip-note');
   return Number((note.match(/^(\d+) cells shown\.$/) ?? assert.fail(note))[1]);
 }
@@ -40,7 +40,7 @@ async function level(z) {
 }
 
 async function clickMiddle(right = 0, down = 0) {
-  await page.waitForTimeout(150);
+  await settle();
   const box = await page.locator('#canvas').boundingBox();
   await page.mouse.click(box.x + box.width / 2 + right, box.y + box.height / 2 + down);
   await page.waitForSelector('#picked:not([hidden])');
@@ -201,14 +201,14 @@ const checks = {
   async 'steps through the fields'() {
     await page.selectOption('#field', { label: 'mode_1' });
     await page.click('#next-field');
-    await page.waitForTimeout(100);
+    await settle();
     assert.equal(await page.innerText('#legend-name'), 'mode_2');
     await page.focus('#canvas');
     await page.keyboard.press(']');
-    await page.waitForTimeout(100);
+    await settle();
     assert.equal(await page.innerText('#legend-name'), 'mode_3');
     await page.keyboard.press('[');
-    await page.waitForTimeout(100);
+    await settle();
     assert.equal(await page.innerText('#legend-name'), 'mode_2');
   },
   async 'arrows are clipped'() {
@@ -225,7 +225,7 @@ const checks = {
     await page.waitForTimeout(400);
     assert.notEqual(await page.inputValue('#clip-level'), before);
     await page.keyboard.press('a');
-    await page.waitForTimeout(100);
+    await settle();
     const stopped = await page.inputValue('#clip-level');
     await page.waitForTimeout(200);
     assert.equal(await page.inputValue('#clip-level'), stopped);
@@ -251,6 +251,13 @@ const checks = {
     const arms = await cut();
     assert.equal(arms.cells, 2);
     near(arms.area, 2 * 3, 1e-5);
+    await page.focus('#canvas');
+    await page.keyboard.press('f');
+    near((await cut()).area, 2 * 3, 1e-5);
+    const before = await look();
+    await page.keyboard.press('k');
+    await page.keyboard.press('k');
+    assert.ok(change(before, await look()) > 0.001);
   },
   async 'a volume without cells is empty'() {
     await page.click('.meshes button:has-text("empty")');
