@@ -1,6 +1,8 @@
 #pragma once
 // Measures of volume meshes that the claims are relative to.
 
+#include <span>
+
 #include "carat/prolongation/virtual_cells.h"
 #include "support/measures.h"
 
@@ -33,11 +35,24 @@ void for_virtual_tets(const PolyhedralMesh& mesh, const VirtualCells& virtuals,
     }
 }
 
+/// Sum of hundreds of thousands of equal numbers, to the last digits.
+template <class Values>
+double accurate_sum(const Values& values) {
+  long double sum = 0;
+  for (const double value : values) sum += value;
+  return static_cast<double>(sum);
+}
+
+inline double total(const SparseMatrix& a) {
+  return accurate_sum(
+      std::span<const double>(a.valuePtr(), static_cast<std::size_t>(a.nonZeros())));
+}
+
 /// Volume of the virtual refinement.
 inline double refinement_volume(const PolyhedralMesh& mesh, const VirtualVertexRule& rule = {}) {
-  double sum = 0;
+  long double sum = 0;
   for_virtual_tets(mesh, virtual_cells(mesh, rule), [&](double volume, double) { sum += volume; });
-  return sum;
+  return static_cast<double>(sum);
 }
 
 /// Cubed size over six times the volume of the worst virtual tetrahedron: by this factor the
