@@ -72,6 +72,7 @@ const fragmentShader = /* glsl */ `
   uniform float low;
   uniform float span;
   uniform float isolineStep;
+  uniform float evenness;
   in vec3 eye;
   in vec3 smoothNormal;
   in float v;
@@ -111,7 +112,7 @@ const fragmentShader = /* glsl */ `
     vec3 key = normalize(vec3(-0.35, 0.55, 0.75));
     float light = 0.34 + 0.52 * max(dot(n, key), 0.0) + 0.26 * max(dot(n, toEye), 0.0);
     float gloss = 0.05 * pow(max(dot(n, normalize(key + toEye)), 0.0), 40.0);
-    vec3 lit = pow(base, vec3(2.2)) * light + gloss;
+    vec3 lit = pow(base, vec3(2.2)) * mix(light, 0.96, evenness) + gloss * (1.0 - evenness);
     pixel = vec4(pow(lit, vec3(1.0 / 2.2)), 1.0);
   }
 `;
@@ -129,14 +130,17 @@ export class Shading {
     isolineStep: { value: 0 },
   };
 
-  /** A material that follows this shading; the caller disposes of it. */
-  material(cells?: CellUniforms): ShaderMaterial {
+  /**
+   * A material that follows this shading; the caller disposes of it.
+   * \param evenness  1: lit alike from all sides, so that colours are those of the bar; 0: not
+   */
+  material(cells?: CellUniforms, evenness = 0): ShaderMaterial {
     const shader = cells ? cellShader : plainShader;
     return new ShaderMaterial({
       glslVersion: GLSL3,
       vertexShader: shader.vertex + vertexShader,
       fragmentShader: shader.fragment + fragmentShader,
-      uniforms: { ...this.uniforms, ...cells },
+      uniforms: { ...this.uniforms, ...cells, evenness: { value: evenness } },
       side: DoubleSide,
       polygonOffset: true,
       polygonOffsetFactor: 1,

@@ -63,9 +63,9 @@ class DrawnSkin {
   private readonly faces: ThreeMesh<BufferGeometry, ShaderMaterial>;
   private readonly edges: Edges;
 
-  constructor(shading: Shading, moves: Moves, meanEdge: number) {
+  constructor(shading: Shading, moves: Moves, meanEdge: number, evenness: number) {
     this.uniforms = { ...moves, plane: { value: noPlane.clone() } };
-    this.faces = new ThreeMesh(new BufferGeometry(), shading.material(this.uniforms));
+    this.faces = new ThreeMesh(new BufferGeometry(), shading.material(this.uniforms, evenness));
     this.faces.frustumCulled = false;
     this.edges = new Edges(meanEdge, this.uniforms);
     this.object.add(this.faces, this.edges.object);
@@ -122,8 +122,8 @@ export class Solid implements Shape {
   private area = 0;
 
   constructor(readonly volume: Volume) {
-    this.outside = new DrawnSkin(this.shading, this.moves, volume.meanEdge);
-    this.cut = new DrawnSkin(this.shading, this.moves, volume.meanEdge);
+    this.outside = new DrawnSkin(this.shading, this.moves, volume.meanEdge, 0);
+    this.cut = new DrawnSkin(this.shading, this.moves, volume.meanEdge, 0.8);
     this.hidden = volume.info.patches.map(() => false);
     this.object.add(this.outside.object, this.cut.object);
     this.update();
