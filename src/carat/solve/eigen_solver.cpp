@@ -1,5 +1,6 @@
 #include "carat/solve/eigen_solver.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,8 @@ constexpr Index kMaxDense = 3000;
 constexpr Index kSpareDimensions = 32;
 // The largest basis, 8 GB.
 constexpr double kMaxEntries = 1e9;
+// Residuals beyond this are worth as many solves as there are pairs.
+constexpr double kGoodResidual = 1e-9;
 // 1^T S 1 / sum |S_ij| of constants that S annihilates: rounding leaves about 1e-16.
 constexpr double kZeroEnergy = 1e-12;
 
@@ -205,6 +208,39 @@ void solve_dense(const Pencil& pencil, Index count, Vector& values, Matrix& vect
   pencil.project(vectors);
 }
 
+double residual_of(const Pencil& pencil, double value, const Vector& x) {
+  const Vector s_x = pencil.s * x;
+  if (value == 0) {
+    const double terms = (pencil.s.cwiseAbs() * x.cwiseAbs()).norm();
+    return terms > 0 ? s_x.norm() / terms : 0;
+  }
+  const Vector m_x = pencil.m * x;
+  return (s_x - value * m_x).norm() / (value * m_x.norm());
+}
+
+/// Where eigenvalues lie far apart, the rounding of the smallest ones' solves hides in the others'
+/// vectors as rough noise; one more application of S^-1 M alone damps it.
+/// \return number of right-hand sides solved for
+Index refine(const Pencil& pencil, const Vector& values, Matrix& vectors) {
+  double worst = 0;
+  for (Eigen::Index k = 0; k < values.size(); ++k)
+    worst = std::max(worst, residual_of(pencil, values[k], vectors.col(k)));
+  if (worst <= kGoodResidual) return 0;
+  constexpr Eigen::Index kAtOnce = 8;
+  for (Eigen::Index k = 0; k < values.size(); k += kAtOnce) {
+    auto some = vectors.middleCols(k, std::min(kAtOnce, values.size() - k));
+    some = pencil.solve(pencil.mass_product(some)) * values.segment(k, some.cols()).asDiagonal();
+  }
+  const Matrix gram = vectors.transpose() * pencil.mass_product(vectors);
+  const Eigen::LLT<Matrix> factor(gram);
+  if (factor.info() != Eigen::Success)
+    throw SolverFailure(
+        "eigenpairs: the vectors depend on each other; the matrices are too "
+        "ill-conditioned, look for degenerate elements");
+  factor.matrixU().solveInPlace<Eigen::OnTheRight>(vectors);
+  return static_cast<Index>(values.size());
+}
+
 /// The `count` pairs after the zero modes.
 /// \return number of right-hand sides solved for
 Index solve_nonzero(const Pencil& pencil, Index count, Vector& values, Matrix& vectors) {
@@ -230,17 +266,7 @@ Index solve_nonzero(const Pencil& pencil, Index count, Vector& values, Matrix& v
     values[i] = 1 / lanczos.value(i);
     vectors.col(i) = lanczos.vector(i);
   }
-  return lanczos.solves();
-}
-
-double residual_of(const Pencil& pencil, double value, const Vector& x) {
-  const Vector s_x = pencil.s * x;
-  if (value == 0) {
-    const double terms = (pencil.s.cwiseAbs() * x.cwiseAbs()).norm();
-    return terms > 0 ? s_x.norm() / terms : 0;
-  }
-  const Vector m_x = pencil.m * x;
-  return (s_x - value * m_x).norm() / (value * m_x.norm());
+  return lanczos.solves() + refine(pencil, values, vectors);
 }
 
 /// Turns x so that its first large entry is positive. The bound is no value that symmetric modes
