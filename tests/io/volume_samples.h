@@ -235,7 +235,7 @@ inline std::string medit_sample() {
     text += line;
   }
   return text +
-         "Edges\n1\n1 2 9\nTriangles\n2\n5 6 9 4\n6 7 9 4\nQuadrilaterals\n2\n1 4 3 2 3\n"
+         "Edges\n1\n1 2 9\nTriangles\n3\n5 6 9 4\n6 7 9 4\n7 8 9 0\nQuadrilaterals\n2\n1 4 3 2 3\n"
          "5 6 7 8 7\nCorners\n2\n1\n2\nHexahedra\n1\n1 2 3 4 5 6 7 8 1\nPyramids 1\n"
          "5 6 7 8 9 2\nRidges\n1\n1\nEnd\n";
 }

@@ -117,22 +117,23 @@ PatchEntry read_patch(const FoamFile& file, FoamTokens& tokens) {
   return entry;
 }
 
+/// \param taken  faces of the patches so far
 BoundaryPatch to_patch(std::string name, const PatchEntry& entry, const PolyhedralMesh& mesh,
-                       std::int64_t& n_left) {
+                       std::vector<bool>& taken) {
   const std::int64_t n = mesh.n_faces();
-  if (entry.start < 0 || entry.n_faces < 0 || entry.n_faces > n_left ||
-      entry.start > n - entry.n_faces)
+  if (entry.start < 0 || entry.n_faces < 0 || entry.n_faces > n || entry.start > n - entry.n_faces)
     throw IoError("patch " + in_quotes(name) + " has " + std::to_string(entry.n_faces) +
                   " faces from " + std::to_string(entry.start) + " on; the mesh has faces 0 to " +
-                  std::to_string(n - 1) + ", and each can be in one patch");
-  n_left -= entry.n_faces;
+                  std::to_string(n - 1));
   BoundaryPatch patch{std::move(name), entry.type, {}};
-  patch.faces.reserve(static_cast<std::size_t>(entry.n_faces));
-  for (std::int64_t f = entry.start; f < entry.start + entry.n_faces; ++f) {
-    if (!mesh.face_cells()[static_cast<std::size_t>(f)].boundary())
+  for (auto f = static_cast<Index>(entry.start); f < entry.start + entry.n_faces; ++f) {
+    const auto i = static_cast<std::size_t>(f);
+    if (taken[i] || !mesh.face_cells()[i].boundary())
       throw IoError("patch " + in_quotes(patch.name) + " has face " + std::to_string(f) +
-                    ", which is not on the boundary; correct nFaces and startFace");
-    patch.faces.push_back(static_cast<Index>(f));
+                    ", which is " + (taken[i] ? "in another patch" : "not on the boundary") +
+                    "; correct nFaces and startFace");
+    taken[i] = true;
+    patch.faces.push_back(f);
   }
   return patch;
 }
@@ -143,13 +144,13 @@ std::vector<BoundaryPatch> read_patches(const fs::path& folder, const Polyhedral
   to_number(file, tokens, tokens.next());
   if (tokens.next() != "(") fail_in(file, tokens, "'(' is missing; the file is damaged");
   std::vector<BoundaryPatch> patches;
-  std::int64_t n_left = mesh.n_faces();
+  std::vector<bool> taken(static_cast<std::size_t>(mesh.n_faces()));
   for (std::string_view name = tokens.next(); name != ")"; name = tokens.next()) {
     if (name.empty() || tokens.next() != "{")
       fail_in(file, tokens, "the list of patches ends too early; the file is truncated or damaged");
     std::string text(name);
     const PatchEntry entry = read_patch(file, tokens);
-    patches.push_back(to_patch(std::move(text), entry, mesh, n_left));
+    patches.push_back(to_patch(std::move(text), entry, mesh, taken));
   }
   return patches;
 }
