@@ -60,7 +60,7 @@ Failure unknown_command(const std::string& name) {
 
 void print_help() {
   std::cout << "carat " CARAT_VERSION
-               " - discrete differential operators on polygon meshes\n\n"
+               " - discrete differential operators on polygon and polyhedral meshes\n\n"
                "Usage: carat COMMAND [OPTIONS]\n\nCommands:\n";
   for (const Command* command : commands()) {
     std::string name = command->name;
@@ -75,7 +75,9 @@ void print_help() {
                "  carat generate sphere-hexagons --level 4 -o sphere.ply\n"
                "  carat info sphere.ply\n"
                "  carat geodesics sphere.ply --source 0 -o distance.html\n"
-               "  carat curvature sphere.ply --signed -o curvature.vtp\n";
+               "  carat curvature sphere.ply --signed -o curvature.vtp\n"
+               "  carat generate ball-voronoi --level 2 -o ball.vtu\n"
+               "  carat eigen ball.vtu --dirichlet -o modes.html\n";
 }
 
 /// OpenBLAS has a pool of its own. It is looked up, as other BLAS libraries serve as well.

@@ -83,6 +83,55 @@ class CaratTest(unittest.TestCase):
         lines += [" ".join(map(str, [len(f), *f])) for f in faces]
         return self.write(name, "\n".join(lines) + "\n")
 
+    def write_ovm(self, name, points, cells, patches=None):
+        """Cells as lists of faces, these as tuples of vertices that are seen from outside counter-
+        clockwise. Patches: name -> faces."""
+        edges, faces, polyhedra = {}, {}, []
+        for cell in cells:
+            sides = []
+            for face in cell:
+                key = frozenset(face)
+                if key not in faces:
+                    faces[key] = (len(faces), face)
+                    for a, b in zip(face, face[1:] + face[:1]):
+                        edges.setdefault((min(a, b), max(a, b)), len(edges))
+                    sides.append(2 * faces[key][0] + 1)
+                else:
+                    sides.append(2 * faces[key][0])
+            polyhedra.append(sides)
+
+        def numbers(values):
+            return " ".join(map(str, values))
+
+        lines = ["OVM ASCII", "Vertices", len(points), *(numbers(map(float, p)) for p in points),
+                 "Edges", len(edges), *(numbers(e) for e in edges), "Faces", len(faces)]
+        for _, face in faces.values():
+            half_edges = [2 * edges[min(a, b), max(a, b)] + (a > b)
+                          for a, b in zip(face, face[1:] + face[:1])]
+            lines.append(numbers([len(face), *half_edges]))
+        lines += ["Polyhedra", len(polyhedra), *(numbers([len(p), *p]) for p in polyhedra)]
+        for patch, members in (patches or {}).items():
+            wanted = {frozenset(face) for face in members}
+            lines += [f'FProp bool "{patch}"', *(int(key in wanted) for key in faces)]
+        return self.write(name, "\n".join(map(str, lines)) + "\n")
+
+    def read_ovm(self, name):
+        """Points, and the fields {(of, name): rows}, with of = 'V' or 'C', of an OVM file."""
+        lines = iter((self.folder / name).read_text().splitlines())
+        self.assertEqual(next(lines), "OVM ASCII")
+        counts, points, fields = {}, [], {}
+        for line in lines:
+            if line in ("Vertices", "Edges", "Faces", "Polyhedra"):
+                counts[line[0]] = int(next(lines))
+                rows = [next(lines).split() for _ in range(counts[line[0]])]
+                if line == "Vertices":
+                    points = [tuple(map(float, row)) for row in rows]
+            elif line[1:].startswith("Prop "):
+                n = counts["P" if line[0] == "C" else line[0]]
+                rows = [list(map(float, next(lines).split())) for _ in range(n)]
+                fields[line[0], line.split('"')[1]] = rows
+        return points, fields
+
     def read_matrix(self, name):
         """Rows, columns and {(row, column): value} of a Matrix Market file."""
         with open(self.folder / name, encoding="ascii") as file:

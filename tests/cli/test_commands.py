@@ -5,7 +5,7 @@ import subprocess
 
 from support import PROGRAM, CaratTest, main
 
-APPS = ["curvature", "geodesics", "poisson"]
+APPS = ["curvature", "geodesics", "poisson", "eigen"]
 COMMANDS = ["info", *APPS, "operators", "view", "convert", "generate", "list"]
 
 

@@ -1,0 +1,113 @@
+// carat eigen: eigenvalues and modes of the Laplacian.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "carat/apps/eigenmodes.h"
+#include "carat/base/error.h"
+#include "carat/mesh/statistics.h"
+#include "cli/command.h"
+#include "cli/files.h"
+#include "cli/mesh_kinds.h"
+#include "cli/operator_options.h"
+
+namespace carat::cli {
+namespace {
+
+struct Options {
+  std::string input, output;
+  Index count = 10;
+  bool dirichlet = false;
+  OperatorOptions discretization;
+};
+
+/// Vertices where the modes vanish.
+template <class Mesh>
+std::vector<Index> dirichlet_vertices(const Mesh& mesh, bool dirichlet) {
+  std::vector<Index> vertices;
+  if (!dirichlet) return vertices;
+  const std::vector<bool> on_boundary = boundary_vertices(mesh);
+  for (Index v = 0; v < mesh.n_vertices(); ++v)
+    if (on_boundary[static_cast<std::size_t>(v)]) vertices.push_back(v);
+  if (vertices.empty())
+    throw InvalidOption("--dirichlet: the mesh is closed, it has no boundary; leave it out");
+  return vertices;
+}
+
+void report_pairs(Session& session, const EigenPairs& pairs) {
+  Json& report = session.report();
+  report["eigenvalues"] = Json::array();
+  report["residuals"] = Json::array();
+  session.say("mode        lambda          residual");
+  for (Index k = 0; k < pairs.values.size(); ++k) {
+    report["eigenvalues"].push_back(pairs.values[k]);
+    report["residuals"].push_back(pairs.residuals[k]);
+    char line[64];
+    std::snprintf(line, sizeof line, "%-11d %-15.10g %.1e", k + 1, pairs.values[k],
+                  pairs.residuals[k]);
+    session.say(line);
+  }
+  report["zero_modes"] = pairs.zero_modes;
+  report["solver"] = {{"method", pairs.factor.method},
+                      {"ordering", pairs.factor.ordering},
+                      {"factor_nnz", pairs.factor.nonzeros},
+                      {"solves", pairs.solves}};
+}
+
+template <class Data>
+void find_modes(Session& session, const Options& options, Data& data) {
+  check_output_kind(options.output, words(data.mesh));
+  const std::vector<Index> fixed = dirichlet_vertices(data.mesh, options.dirichlet);
+  const Discretization discretization =
+      discretize(session, data.mesh, options.discretization, DiscretizationParts::Matrices);
+  const EigenPairs pairs =
+      session.phase("solve", [&] { return eigenmodes(discretization, options.count, fixed); });
+  session.report()["options"]["count"] = options.count;
+  session.report()["options"]["dirichlet"] = options.dirichlet;
+  report_pairs(session, pairs);
+  if (options.output.empty()) return;
+  data.fields.vertex.clear();
+  element_fields(data).clear();
+  for (Index k = 0; k < pairs.values.size(); ++k)
+    data.fields.vertex.push_back(
+        scalar_field("mode_" + std::to_string(k + 1), pairs.vectors.col(k)));
+  write_output(session, options.output, "Eigenmodes", std::move(data));
+}
+
+void run(Session& session, const Options& options) {
+  check_output(options.output, Content::MeshFields);
+  MeshData data = read_input(session, options.input);
+  std::visit([&](auto& held) { find_modes(session, options, held); }, data);
+}
+
+std::function<void(Session&)> declare(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("MESH", options->input, "The mesh")->required();
+  app.add_option("-k,--count", options->count, "How many, from the lowest")->capture_default_str();
+  app.add_flag("--dirichlet", options->dirichlet,
+               "Modes that vanish on the boundary; without it the\n"
+               "derivative across the boundary vanishes");
+  app.add_option("-o,--output", options->output,
+                 "File for the mesh with the fields mode_1, mode_2, ...\n"
+                 "(vertices), or a view (.html); without it nothing is\n"
+                 "written");
+  declare_operator_options(app, options->discretization);
+  return [options](Session& session) { run(session, *options); };
+}
+
+}  // namespace
+
+const Command eigen_command = {
+    "eigen",
+    "Lowest eigenvalues and modes of the Laplacian",
+    "S x = lambda M x, on surfaces and in volumes. Modes are M-orthonormal; of multiple\n"
+    "eigenvalues all members are found. The residual is |S x - lambda M x| / (lambda |M x|).\n"
+    "Without --dirichlet every component of the mesh has lambda = 0 once.",
+    "  carat eigen bunny.obj -k 20 -o modes.html\n"
+    "  carat eigen ball.vtu -k 34 --dirichlet -o modes.vtu\n"
+    "  carat eigen case -k 5 --operator bunge --lumped --json\n",
+    true,
+    declare};
+
+}  // namespace carat::cli
