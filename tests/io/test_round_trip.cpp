@@ -86,7 +86,8 @@ TEST(Formats, HaveTheirAbilities) {
     table += format.name + (format.reads ? "r" : "") + (format.writes ? "w" : "") +
              (format.reads_volumes ? "R" : "") + (format.writes_volumes ? "W" : "") +
              (format.fields ? "f" : "") + " ";
-  EXPECT_EQ(table, "plyrwf offrw stlr vtkrRf vtprwf vturwRWf ovmrRWf openfoamR meditrRf gmshrRf objrw ");
+  EXPECT_EQ(table,
+            "plyrwf offrw stlr vtkrRf vtprwf vturwRWf ovmrRWf openfoamR meditrRf gmshrRf objrw ");
 }
 
 TEST(Formats, KeepNonFiniteFieldValues) {

@@ -2,6 +2,7 @@
 
 #include "carat/base/error.h"
 #include "carat/mesh/cell_kind.h"
+#include "foam_case.h"
 #include "volume_samples.h"
 
 namespace carat::test {
