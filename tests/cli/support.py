@@ -153,20 +153,29 @@ class CaratTest(unittest.TestCase):
         self.assertEqual(count, 0)
         return rows, columns, entries
 
-    def read_field(self, name, field):
-        """Values of a vertex field of a binary PLY file with double properties."""
+    def read_field(self, name, field, element="vertex"):
+        """Values of a field of a binary PLY file with double properties."""
         data = (self.folder / name).read_bytes()
         end = data.index(b"end_header\n") + len(b"end_header\n")
         header = data[:end].decode()
         self.assertIn("binary_little_endian", header)
-        vertices = int(re.search(r"element vertex (\d+)", header).group(1))
-        body = header.split("element vertex")[1].split("element")[0]
-        kinds = re.findall(r"property (\w+) (\w+)", body)
-        layout = struct.Struct("<" + "".join({"double": "d", "float": "f", "int": "i"}[k]
-                                             for k, _ in kinds))
-        column = [n for _, n in kinds].index(field)
-        return [row[column] for row in
-                layout.iter_unpack(data[end:end + vertices * layout.size])]
+        codes = {"double": "d", "float": "f", "int": "i", "uint": "I", "uchar": "B"}
+        at, values = end, []
+        for block in header.split("element ")[1:]:
+            kind, n = block.split()[:2]
+            properties = re.findall(r"property (?:list (\w+) )?(\w+) (\w+)", block)
+            for _ in range(int(n)):
+                for counts, items, prop in properties:
+                    length = 1
+                    if counts:
+                        length, = struct.unpack_from("<" + codes[counts], data, at)
+                        at += struct.calcsize(codes[counts])
+                    row = struct.unpack_from(f"<{length}{codes[items]}", data, at)
+                    at += struct.calcsize(f"<{length}{codes[items]}")
+                    if kind == element and prop == field:
+                        values.append(row[0])
+        self.assertEqual(at, len(data))
+        return values
 
 
 def great_circle(p, q):

@@ -93,6 +93,11 @@ class Answers(CaratTest):
         distance = self.read_ovm("a.ovm")[1]["V", "distance"]
         self.assertEqual(self.read_field("boundary.ply", "distance"),
                          [distance[int(v)][0] for v in ids])
+        cells = self.read_field("boundary.ply", "cell_id", "face")
+        directions = self.read_ovm("a.ovm")[1]["C", "direction"]
+        for axis in range(3):
+            self.assertEqual(self.read_field("boundary.ply", f"direction_{'xyz'[axis]}", "face"),
+                             [directions[int(c)][axis] for c in cells])
         self.succeed("curvature", "boundary.ply")
         report = self.report("convert", "a.ovm", "t.obj", "--surface", "--triangulate")
         self.assertEqual(len(report["notes"]), 2)
@@ -237,6 +242,12 @@ class Poisson(CaratTest):
                        says=["north", "west, east, top"])
         report = self.report("convert", mesh, "boundary.ply", "--surface")
         self.assertEqual(report["patches"], ["west", "east", "top"])
+        numbers = self.read_field("boundary.ply", "patch", "face")
+        self.assertEqual([numbers.count(k) for k in [-1, 0, 1, 2]], [27, 9, 9, 9])
+        # Every third cell of the grid is at x = 0.
+        cells = self.read_field("boundary.ply", "cell_id", "face")
+        west = {int(c) for c, patch in zip(cells, numbers) if patch == 0}
+        self.assertEqual(west, set(range(0, 27, 3)))
 
     def test_coefficients_of_cells(self):
         points, cells = grid(4)
