@@ -100,9 +100,9 @@ void assemble_tet_diamonds(SparseMatrix& stiffness_matrix, SparseMatrix& mass_ma
         const TetTerm& term = workspace.terms[c];
         std::size_t opposite = 0;
         while (tets.places[c][opposite][3] != own) ++opposite;
-        double around = 0;  // of the faces at this vertex
-        for (std::size_t k = 0; k < 4; ++k)
-          if (k != opposite) around += term.face_mass[k];
+        // Of the faces at this vertex.
+        const double around = (term.face_mass[0] + term.face_mass[1]) +
+                              (term.face_mass[2] + term.face_mass[3]) - term.face_mass[opposite];
         // A vertex of a face has 6 times its pairs' mass by itself, and once more by the face
         // point.
         diagonal_mass += term.cell_mass + 7 * around;

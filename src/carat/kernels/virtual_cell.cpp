@@ -62,6 +62,13 @@ FaceMoment face_moment(const Points& points, std::span<const Index> face, const 
   return moment;
 }
 
+bool is_flat_tetrahedron(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3) {
+  const Vec3 e1 = x1 - x0, e2 = x2 - x0, e3 = x3 - x0;
+  const double size2 = std::max({e1.squaredNorm(), e2.squaredNorm(), e3.squaredNorm()});
+  const double six_volumes = e1.dot(e2.cross(e3));
+  return !(six_volumes * six_volumes > kNoise * kNoise * (size2 * size2 * size2));
+}
+
 bool VirtualCellKernel::minimise_volume(const CellGeometry& cell) {
   // (sum a a^T) x_c = sum a (a . x_f)     [BBA21 (29)]
   FaceMoment a{0, 0, 0, 0, 0, 0};

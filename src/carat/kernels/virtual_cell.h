@@ -19,6 +19,10 @@ struct FaceMoment {
 /// \param face  the face's vertices; \param point  its virtual vertex
 FaceMoment face_moment(const Points& points, std::span<const Index> face, const Vec3& point);
 
+/// Whether a tetrahedron has no volume to speak of. Its virtual vertex needs nothing else: the
+/// weights are 1/4.
+bool is_flat_tetrahedron(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& x3);
+
 /// A polyhedron as VirtualCellKernel sees it; everything is relative to one of its vertices.
 struct CellGeometry {
   std::vector<Vec3> vertices, face_points;

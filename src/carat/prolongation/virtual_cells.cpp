@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <atomic>
 #include <string>
 #include <utility>
 
@@ -42,18 +41,6 @@ void load(const PolyhedralMesh& mesh, const Points& points, const Points& face_p
   }
 }
 
-VirtualVertexStatus tetrahedron_status(const Points& points, std::span<const Index> vertices) {
-  const Vec3 x0 = points.row(vertices[0]).transpose();
-  const Vec3 e1 = Vec3(points.row(vertices[1]).transpose()) - x0;
-  const Vec3 e2 = Vec3(points.row(vertices[2]).transpose()) - x0;
-  const Vec3 e3 = Vec3(points.row(vertices[3]).transpose()) - x0;
-  const double size2 = std::max({e1.squaredNorm(), e2.squaredNorm(), e3.squaredNorm()});
-  const double volume = std::abs(e1.dot(e2.cross(e3)));
-  constexpr double kNoise = 1e-13;
-  return volume > kNoise * size2 * std::sqrt(size2) ? VirtualVertexStatus::Regular
-                                                    : VirtualVertexStatus::Degenerate;
-}
-
 }  // namespace
 
 void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
@@ -79,7 +66,10 @@ void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
       double* const composed = result.cell_weights.data() + cell_vertices.begin(c);
       if (is_tetrahedron(mesh, c)) {
         std::fill(composed, composed + 4, 0.25);
-        result.cell_status[c] = tetrahedron_status(points, vertices);
+        const auto x = [&](std::size_t k) { return Vec3(points.row(vertices[k]).transpose()); };
+        result.cell_status[c] = is_flat_tetrahedron(x(0), x(1), x(2), x(3))
+                                    ? VirtualVertexStatus::Degenerate
+                                    : VirtualVertexStatus::Regular;
       } else {
         load(mesh, points, result.face_points, moments, c, cell);
         const std::size_t n = vertices.size();
@@ -108,16 +98,6 @@ void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
       result.cell_points.row(c) = anchor + offset;
     }
   });
-}
-
-bool any_degenerate_tetrahedron(const PolyhedralMesh& mesh, const Points& points, int threads) {
-  std::atomic<bool> found = false;
-  parallel_blocks(mesh.n_cells(), threads, [&](int, Index begin, Index end) {
-    for (Index c = begin; c < end && !found; ++c)
-      if (tetrahedron_status(points, mesh.cell_vertices().row(c)) != VirtualVertexStatus::Regular)
-        found = true;
-  });
-  return found;
 }
 
 SparseMatrix prolongation_matrix(const PolyhedralMesh& mesh, const VirtualCells& virtuals) {

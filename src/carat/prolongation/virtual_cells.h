@@ -28,10 +28,6 @@ struct VirtualCells {
 void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
                           const VirtualVertexRule& rule, int threads, VirtualCells& result);
 
-/// Whether a cell has no volume, all cells being tetrahedra: otherwise there is nothing to report
-/// of their virtual vertices. Cost: O(cells).
-bool any_degenerate_tetrahedron(const PolyhedralMesh& mesh, const Points& points, int threads);
-
 /// (n_vertices + n_faces + n_cells) x n_vertices: P = P_C P_F.  [BBA21 (17), (30)]
 SparseMatrix prolongation_matrix(const PolyhedralMesh& mesh, const VirtualCells& virtuals);
 

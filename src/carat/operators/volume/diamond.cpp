@@ -1,6 +1,7 @@
 // The Diamond Laplacian in volumes: Bunge, Botsch, Alexa 2021, section 6.
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "carat/assembly/pattern.h"
@@ -10,6 +11,7 @@
 #include "carat/base/parallel.h"
 #include "carat/kernels/diamond_3d.h"
 #include "carat/kernels/tet_diamond.h"
+#include "carat/kernels/virtual_cell.h"
 #include "carat/operators/common.h"
 #include "carat/operators/registry.h"
 #include "carat/operators/volume/incidence.h"
@@ -34,7 +36,7 @@ class VolumeDiamondAssembly final : public Assembly {
   void collect_columns(Index f, Array<Index>& columns) const;
 
   // Numeric.
-  void compute_tets();
+  bool compute_tets();
   TetFaceDiamonds tet_face(Index f, Index own, Index across, bool above) const;
   void compute_faces();
   template <class Conductivity>
@@ -225,7 +227,9 @@ TetFaceDiamonds VolumeDiamondAssembly::tet_face(Index f, Index own, Index across
   return tet_face_diamonds(a, b, c, tip, options_.eps_rel);
 }
 
-void VolumeDiamondAssembly::compute_tets() {
+/// \return whether all tetrahedra have a volume: then there is nothing to report of their points
+bool VolumeDiamondAssembly::compute_tets() {
+  std::atomic<bool> sound = true;
   const Csr& cells = mesh_.cells();
   const Csr& faces = mesh_.face_mesh().faces();
   tet_workspace_.terms.resize(static_cast<std::size_t>(mesh_.n_cells()));
@@ -236,6 +240,9 @@ void VolumeDiamondAssembly::compute_tets() {
       TetTerm term{};
       const Index* const vertices =
           mesh_.cell_vertices().indices.data() + mesh_.cell_vertices().begin(c);
+      if (is_flat_tetrahedron(position(vertices[0]), position(vertices[1]), position(vertices[2]),
+                              position(vertices[3])))
+        sound = false;
       for (std::size_t k = 0; k < 4; ++k) {
         const Index f = cells.indices[cells.begin(c) + static_cast<Index>(k)];
         const FaceCells sides = mesh_.face_cells()[f];
@@ -252,6 +259,7 @@ void VolumeDiamondAssembly::compute_tets() {
       tet_workspace_.terms[c] = term;
     }
   });
+  return sound;
 }
 
 void VolumeDiamondAssembly::collect_columns(Index f, Array<Index>& columns) const {
@@ -403,14 +411,12 @@ void VolumeDiamondAssembly::report() {
 void VolumeDiamondAssembly::update(const Points& points) {
   centre_points(points, points_, origin_);
   // In closed form tetrahedra need no virtual vertices, only the gradient and reports do.
-  if (!tets_ || options_.parts != DiscretizationParts::Matrices ||
-      any_degenerate_tetrahedron(mesh_, points_, options_.threads))
+  virtuals_.cell_status.clear();
+  virtuals_.faces.status.clear();
+  if (!tets_ || !compute_tets() || options_.parts != DiscretizationParts::Matrices)
     update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
-  else
-    virtuals_ = {};
   // S = -L and M = P^T M^ P   [BBA21 (31), (32)]
   if (tets_) {
-    compute_tets();
     assemble_tet_diamonds(result_.stiffness, result_.mass, options_.lumped_mass, incidence_,
                           tet_topology_, options_.threads, tet_workspace_);
   } else {
