@@ -13,6 +13,7 @@
 #include "carat/mesh/polyhedral_mesh.h"
 #include "carat/mesh/statistics.h"
 #include "carat/mesh/transform.h"
+#include "carat/mesh/volume_statistics.h"
 #include "carat/operators/registry.h"
 #include "carat/solve/eigen_solver.h"
 #include "carat/solve/spd_solver.h"
