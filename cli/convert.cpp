@@ -126,6 +126,12 @@ void drop_what_is_lost(Session& session, const Options& options, Data& data) {
     drop(session, data.fields.vertex, reason);
     drop(session, element_fields(data), reason);
   }
+  std::string names;
+  for (const BoundaryPatch& patch : patches(data))
+    names += (names.empty() ? "" : ", ") + patch.name;
+  if (!names.empty() && !carries_patches(options.output))
+    session.note("dropped the boundary patches " + names + ": " + options.output +
+                 " is of a format without patches");
 }
 
 void run(Session& session, const Options& options) {
@@ -169,7 +175,7 @@ const Command convert_command = {
     "Convert a mesh to another format, its boundary, its dual, or triangles",
     "Vertices, faces and cells keep their order. Fields go along where the format has them: with\n"
     "--triangulate faces pass their values on to their triangles, with --dual those of the\n"
-    "faces become those of the vertices if the mesh is closed.",
+    "faces become those of the vertices if the mesh is closed. OVM keeps boundary patches.",
     "  carat convert bunny.obj bunny.ply\n"
     "  carat convert bunny.obj bunny-dual.vtp --dual\n"
     "  carat convert polygons.vtu triangles.ply --triangulate\n"

@@ -92,6 +92,11 @@ bool carries_fields(const std::string& path) {
   return is_page(path) || (format != nullptr && format->fields);
 }
 
+bool carries_patches(const std::string& path) {
+  const FileFormat* const format = writable_format(path);
+  return is_page(path) || (format != nullptr && format->writes_patches);
+}
+
 void check_output(const std::string& path, Content content) {
   if (path.empty()) return;
   if (content == Content::Page && !is_page(path))

@@ -39,8 +39,9 @@ void check_output_kind(const std::string& path, const KindWords& kind);
 void write_output(Session& session, const std::string& path, const std::string& title,
                   const MeshData& data);
 
-/// Whether the format of that extension carries fields.
+/// Whether the format of that extension carries fields, boundary patches.
 bool carries_fields(const std::string& path);
+bool carries_patches(const std::string& path);
 
 /// One value a row as a field.
 Field scalar_field(const std::string& name, const Vector& values);

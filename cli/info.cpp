@@ -89,7 +89,8 @@ const Command info_command = {
     "Lines that begin with ! tell what deserves a look; operators work all the same.\n"
     "The last ones come from assembling the default operator.",
     "  carat info bunny.obj\n"
-    "  carat info result.vtp --json\n",
+    "  carat info result.vtp --json\n"
+    "  carat info cavity/constant/polyMesh\n",
     false,
     declare};
 

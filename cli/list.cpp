@@ -14,7 +14,7 @@ namespace {
 
 /// One line of a list: a name in a column and what it is.
 void say_entry(Session& session, std::string name, const std::string& title) {
-  name.resize(std::max<std::size_t>(name.size() + 1, 20), ' ');
+  name.resize(std::max<std::size_t>(name.size() + 1, 22), ' ');
   session.say(name + title);
 }
 
@@ -71,13 +71,11 @@ Json list_families(Session& session) {
   return list;
 }
 
-std::string abilities(const std::string& meshes, bool reads, bool writes) {
-  if (!reads && !writes) return "";
-  return std::string("; ") +
-         (reads && writes ? "reads and writes "
-          : reads         ? "reads "
-                          : "writes ") +
-         meshes;
+/// "; reads surfaces and volumes", or nothing.
+std::string ability(const std::string& verb, bool surfaces, bool volumes) {
+  if (!surfaces && !volumes) return "";
+  return "; " + verb + (surfaces ? " surfaces" : "") + (surfaces && volumes ? " and" : "") +
+         (volumes ? " volumes" : "");
 }
 
 Json list_formats(Session& session) {
@@ -85,8 +83,8 @@ Json list_formats(Session& session) {
   for (const FileFormat& format : file_formats()) {
     std::string line = format.title;
     for (const std::string& extension : format.extensions) line += " " + extension;
-    line += abilities("surfaces", format.reads, format.writes);
-    line += abilities("volumes", format.reads_volumes, format.writes_volumes);
+    line += ability("reads", format.reads, format.reads_volumes);
+    line += ability("writes", format.writes, format.writes_volumes);
     if (format.fields) line += "; with fields";
     say_entry(session, format.name, line);
     list.push_back({{"name", format.name},
@@ -96,7 +94,8 @@ Json list_formats(Session& session) {
                     {"writes", format.writes},
                     {"reads_volumes", format.reads_volumes},
                     {"writes_volumes", format.writes_volumes},
-                    {"fields", format.fields}});
+                    {"fields", format.fields},
+                    {"writes_patches", format.writes_patches}});
   }
   return list;
 }

@@ -41,12 +41,14 @@ std::function<void(Session&)> declare(CLI::App& app) {
 
 }  // namespace
 
-const Command view_command = {"view",
-                              "Write one interactive HTML page of meshes and their fields",
-                              "The page holds everything it needs: no server, no network.",
-                              "  carat view mesh.ply -o mesh.html\n"
-                              "  carat view geodesics.vtp curvature.vtp -o results.html\n",
-                              false,
-                              declare};
+const Command view_command = {
+    "view",
+    "Write one interactive HTML page of meshes and their fields",
+    "The page holds everything it needs: no server, no network. Volumes are shown with\n"
+    "cuts, whole cells behind a plane, shrunk and pulled apart.",
+    "  carat view mesh.ply -o mesh.html\n"
+    "  carat view geodesics.vtp curvature.vtp modes.vtu -o results.html\n",
+    false,
+    declare};
 
 }  // namespace carat::cli

@@ -1,5 +1,6 @@
-// node tools/render_images.mjs BUILD [CHROMIUM]: renders docs/images with the program in BUILD.
-// The pages are those of `carat ... -o x.html`; headless Chromium looks at them.
+// node tools/render_images.mjs BUILD [CHROMIUM [CASE]]: renders docs/images with the program in
+// BUILD. The pages are those of `carat ... -o x.html`; headless Chromium looks at them. CASE is the
+// case `flange` of docs/openfoam.md; without it its picture stays as it is.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -7,8 +8,8 @@ import { tmpdir } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
-const [build, executablePath = '/usr/bin/chromium'] = process.argv.slice(2);
-if (!build) throw new Error('usage: node tools/render_images.mjs BUILD [CHROMIUM]');
+const [build, executablePath = '/usr/bin/chromium', foamCase] = process.argv.slice(2);
+if (!build) throw new Error('usage: node tools/render_images.mjs BUILD [CHROMIUM [CASE]]');
 const packages = resolve(build, 'viewer/work/package.json');
 const { chromium } = createRequire(packages)('playwright-core');
 const output = join(dirname(fileURLToPath(import.meta.url)), '../docs/images');
@@ -131,15 +132,36 @@ try {
         file('poisson.html'));
   save('poisson.png', await look('poisson.html', { set: { low: '0', high: '1.22' } }));
 
-  const pictures = [];
-  for (const { name } of JSON.parse(carat('list', 'families', '--json')).families) {
-    const options = name.startsWith('plane') ? ['--level', '0'] : ['--level', '1'];
-    carat('generate', name, ...options, '-o', file(`${name}.html`));
-    const keys = name.startsWith('torus') ? times(5, 'ArrowUp') : [];
-    const picture = await look(`${name}.html`, { width: 170, height: 170, legend: false, keys });
-    pictures.push({ title: name, picture });
+  carat('generate', 'ball-voronoi', '--level', '2', '-o', file('ball.vtu'));
+  carat('geodesics', file('ball.vtu'), '--source', '0', '--edge-length', 'mean', '-o',
+        file('distance.html'));
+  carat('eigen', file('ball.vtu'), '-k', '6', '--dirichlet', '-o', file('modes.html'));
+  const inside = { 'clip-mode': 'cut', 'clip-axis': 'y', 'clip-position': '0.5' };
+  save('volume-geodesics.png', await look('distance.html', { set: inside }));
+  save('volume-mode.png', await look('modes.html',
+      { set: { ...inside, 'clip-mode': 'cells', field: '4' } }));
+  carat('generate', 'ball-truncated', '--level', '1', '-o', file('cells.vtu'));
+  carat('geodesics', file('cells.vtu'), '--source', '0', '-o', file('cells.html'));
+  save('volume-cells.png', await look('cells.html',
+      { set: { ...inside, 'clip-mode': 'cells', shrink: '0.15', explode: '0.35', isolines: false } }));
+  if (foamCase) {
+    carat('poisson', foamCase, '--rhs', '0', '--dirichlet', 'patch2=273', '--dirichlet',
+          'patch4=573', '-o', file('flange.html'));
+    save('openfoam.png', await look('flange.html'));
   }
-  save('families.png', await grid(pictures, 5, 170, 170));
+
+  const families = JSON.parse(carat('list', 'families', '--json')).families;
+  const pictures = { surface: [], volume: [] };
+  for (const { name, kind } of families) {
+    const level = kind === 'volume' || name.startsWith('plane') ? '0' : '1';
+    carat('generate', name, '--level', level, '-o', file(`${name}.html`));
+    const keys = name.startsWith('torus') ? times(5, 'ArrowUp') : [];
+    const set = kind === 'volume' ? { ...inside, 'clip-mode': 'cells' } : {};
+    const picture = await look(`${name}.html`, { width: 170, height: 170, legend: false, keys, set });
+    pictures[kind].push({ title: name, picture });
+  }
+  save('families.png', await grid(pictures.surface, 5, 170, 170));
+  save('volume-families.png', await grid(pictures.volume, 8, 170, 170));
 } finally {
   await context.close();
   rmSync(work, { recursive: true, force: true });

@@ -471,6 +471,9 @@ class OpenFoam(CaratTest):
         self.assertIn('"case"', (self.folder / "page.html").read_text())
         self.succeed("convert", "case", "case.ovm")
         self.assertEqual(len(self.report("info", "case.ovm")["patches"]), 2)
+        self.assertEqual(self.report("convert", "case", "case.vtu")["notes"],
+                         ["dropped the boundary patches west, walls: case.vtu is of a format "
+                          "without patches"])
         self.assertFalse(any(pathlib.Path(self.folder / "case").glob("*.vtu")))
 
     def test_damaged(self):

@@ -43,7 +43,8 @@ struct FileFormat {
   bool reads = false, writes = false;
   bool fields = false;  ///< carries named vertex and face fields, of volumes vertex and cell ones
   bool reads_volumes = false, writes_volumes = false;
-  bool surfaces = true;  ///< can hold surface meshes at all: what reads and writes speak of
+  bool surfaces = true;         ///< can hold surface meshes at all: what reads and writes speak of
+  bool writes_patches = false;  ///< keeps the boundary patches of volumes
 };
 
 /// All formats, in the order of the table in the documentation.

@@ -332,7 +332,7 @@ void write_volume_ovm(const std::filesystem::path& path, const PolyhedralMesh& m
 }  // namespace
 
 FormatEntry ovm_format() {
-  return {.format = {"ovm", "OpenVolumeMesh", {".ovm"}, true, false, true, true, true},
+  return {.format = {"ovm", "OpenVolumeMesh", {".ovm"}, true, false, true, true, true, true, true},
           .recognises = recognises_ovm,
           .read = read_ovm,
           .write_volume = write_volume_ovm};
