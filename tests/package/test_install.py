@@ -65,7 +65,7 @@ class Package(unittest.TestCase):
     def test_examples(self):
         self.build(self.configure(SOURCE / "examples", "examples"), "examples")
         programs = self.folder / "examples"
-        for example in "laplacian", "poisson":
+        for example in "laplacian", "poisson", "eigenmodes":
             self.assertEqual(self.succeed(programs / example), self.sample_run(example))
         mesh, result = self.folder / "sphere.ply", self.folder / "distance.vtp"
         carat = self.prefix / "bin/carat"
