@@ -130,7 +130,6 @@ TEST(Formats, RefuseToWriteWhatTheyCannot) {
 }
 
 TEST(BufferedWriter, ReportsAFullDisk) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   detail::BufferedWriter out("/dev/full");
   out.put("text").put(1.5);
   EXPECT_THROW(out.close(), IoError);
