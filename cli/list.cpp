@@ -28,27 +28,55 @@ void list_kind(Session& session, const KindWords& kind, const Entries& entries, 
   for (const auto& entry : entries) list.push_back(describe(entry, kind));
 }
 
+Json describe_options(const OperatorOptionSet& options) {
+  Json json;
+  for (const MassKind kind : options.masses) json["mass"].push_back(mass_kind_name(kind));
+  json["virtual_vertex"] = options.virtual_vertex;
+  if (options.lambda) json["lambda"] = *options.lambda;
+  if (options.boundary_unknowns) json["boundary_unknowns"] = *options.boundary_unknowns;
+  return json;
+}
+
+template <class Entry>
+Json describe_operator(const Entry& entry, const char* kind, bool is_default) {
+  const OperatorClaims& claims = entry.claims;
+  return {{"name", entry.name},
+          {"kind", kind},
+          {"title", entry.title},
+          {"citation", entry.citation},
+          {"default", is_default},
+          {"claims",
+           {{"symmetric", claims.symmetric},
+            {"semidefinite", claims.semidefinite},
+            {"kernel_is_constants", claims.kernel_is_constants},
+            {"linear_precision", claims.linear_precision},
+            {"gradient", claims.gradient},
+            {"divergence_of_gradient", claims.divergence_of_gradient},
+            {"total_mass", claims.total_mass},
+            {"positive_mass", claims.positive_mass},
+            {"maximum_principle", claims.maximum_principle},
+            {"second_order", claims.second_order},
+            {"equals_cotan_on_simplices", claims.equals_cotan_on_simplices},
+            {"simplices_only", claims.simplices_only},
+            {"face_local", claims.face_local},
+            {"vertex_unknowns", claims.vertex_unknowns}}},
+          {"options", describe_options(entry.options)},
+          {"card",
+           {{"definition", entry.card.definition},
+            {"unknowns", entry.card.unknowns},
+            {"sparsity", entry.card.sparsity},
+            {"when", entry.card.when},
+            {"references", entry.card.references}}}};
+}
+
 Json list_operators(Session& session) {
   Json list = Json::array();
   const auto list_all = [&](const KindWords& kind, const auto& operators) {
     list_kind(session, kind, operators, list,
               [&](const auto* entry, const KindWords& words) -> Json {
-                const OperatorClaims& claims = entry->claims;
                 say_entry(session, std::string("  ") + entry->name,
                           std::string(entry->title) + " [" + entry->citation + "]");
-                return {{"name", entry->name},
-                        {"kind", words.name},
-                        {"title", entry->title},
-                        {"citation", entry->citation},
-                        {"default", entry == operators.front()},
-                        {"claims",
-                         {{"symmetric", claims.symmetric},
-                          {"semidefinite", claims.semidefinite},
-                          {"kernel_is_constants", claims.kernel_is_constants},
-                          {"linear_precision", claims.linear_precision},
-                          {"equals_cotan_on_simplices", claims.equals_cotan_on_simplices},
-                          {"simplices_only", claims.simplices_only},
-                          {"face_local", claims.face_local}}}};
+                return describe_operator(*entry, words.name, entry == operators.front());
               });
   };
   list_all(kSurfaceWords, surface_operators());

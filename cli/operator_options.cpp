@@ -19,6 +19,11 @@ constexpr Names<VirtualPoint, 3> kVirtualPoints{{{"area", VirtualPoint::AreaMini
                                                  {"trace", VirtualPoint::TraceMinimizer}}};
 constexpr Names<AffineWeights, 2> kWeights{
     {{"in-plane", AffineWeights::InPlane}, {"minimum-norm", AffineWeights::MinimumNorm}}};
+constexpr Names<MassKind, 4> kMasses{{{"default", MassKind::Default},
+                                      {"full", MassKind::Full},
+                                      {"lumped", MassKind::Lumped},
+                                      {"voronoi", MassKind::Voronoi}}};
+constexpr Names<bool, 2> kBoundaryUnknowns{{{"keep", true}, {"eliminate", false}}};
 
 template <class Value, std::size_t N>
 std::vector<std::string> names(const Names<Value, N>& table) {
@@ -40,9 +45,36 @@ DiscretizationOptions to_library(const OperatorOptions& options) {
   result.virtual_vertex.point = value_of(kVirtualPoints, options.virtual_point);
   result.virtual_vertex.weights = value_of(kWeights, options.weights);
   result.virtual_vertex.keep_in_kernel = !options.keep_flipped;
-  result.lumped_mass = options.lumped;
+  result.mass = value_of(kMasses, options.mass);
+  result.lambda = options.lambda;
+  if (!options.boundary_unknowns.empty())
+    result.boundary_unknowns = value_of(kBoundaryUnknowns, options.boundary_unknowns);
   result.degenerate = options.strict ? DegeneratePolicy::Strict : DegeneratePolicy::Report;
   return result;
+}
+
+template <class Value, std::size_t N>
+const char* name_of(const Names<Value, N>& table, Value wanted) {
+  for (const auto& [name, value] : table)
+    if (value == wanted) return name;
+  return "";
+}
+
+/// What the operator was made with; options that it has no use for are left out.
+Json to_json(const char* name, const OperatorOptionSet& taken,
+             const DiscretizationOptions& options) {
+  Json json = {{"operator", name},
+               {"mass", mass_kind_name(options.mass)},
+               {"strict", options.degenerate == DegeneratePolicy::Strict}};
+  if (taken.virtual_vertex) {
+    json["virtual_point"] = name_of(kVirtualPoints, options.virtual_vertex.point);
+    json["weights"] = name_of(kWeights, options.virtual_vertex.weights);
+    json["keep_flipped"] = !options.virtual_vertex.keep_in_kernel;
+  }
+  if (options.lambda) json["lambda"] = *options.lambda;
+  if (options.boundary_unknowns)
+    json["boundary_unknowns"] = name_of(kBoundaryUnknowns, *options.boundary_unknowns);
+  return json;
 }
 
 template <class Entry>
@@ -69,6 +101,19 @@ const OperatorEntry<Mesh>& choose_operator(const Mesh& mesh, const std::string& 
                       words(mesh).plural + "; choose one of " + join(names(operators)));
 }
 
+/// The library cannot tell a default that was asked for from one that was not.
+void refuse_unused(const std::string& name, const OperatorOptionSet& taken,
+                   const OperatorOptions& options) {
+  const auto refuse = [&](const char* option) {
+    throw InvalidOption(std::string(option) + ": the operator " + name +
+                        " has no virtual vertices; leave it out");
+  };
+  if (taken.virtual_vertex) return;
+  if (!options.virtual_point.empty()) refuse("--virtual-point");
+  if (!options.weights.empty()) refuse("--weights");
+  if (options.keep_flipped) refuse("--keep-flipped");
+}
+
 /// The library's message, with the option of the program as the remedy.
 DegenerateElement as_option(const DegenerateElement& error) {
   std::string message = error.what();
@@ -82,6 +127,7 @@ template <class Mesh>
 Discretization discretize_mesh(Session& session, const Mesh& mesh, const OperatorOptions& options,
                                DiscretizationParts parts, const Coefficient& coefficient) {
   const OperatorEntry<Mesh>& entry = choose_operator(mesh, options.name);
+  refuse_unused(entry.name, entry.options, options);
   DiscretizationOptions library_options = to_library(options);
   library_options.parts = parts;
   library_options.coefficient = coefficient.function;
@@ -96,17 +142,18 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
   }
   Discretization discretization = assembly->release();
 
-  session.report()["options"] = to_json(options);
-  session.report()["options"]["operator"] = entry.name;
+  session.report()["options"] = to_json(entry.name, entry.options, entry.settle(library_options));
   Json& nnz = session.report()["nnz"];
   nnz["stiffness"] = discretization.stiffness.nonZeros();
   nnz["mass"] = discretization.mass.nonZeros();
+  if (discretization.extra.size() > 0)
+    session.report()["sizes"]["unknowns"] = discretization.n_unknowns();
   if (discretization.gradient_dimension > 0)
     for (const char* const name : {"gradient", "divergence"})
       nnz[name] = discretization.gradient.nonZeros();
   session.report()["sizes"]["samples"] = discretization.n_samples();
   session.report()["sizes"]["gradient_dimension"] = discretization.gradient_dimension;
-  session.say("operator " + discretization.name + ": " + count(discretization.n_vertices(), "row") +
+  session.say("operator " + discretization.name + ": " + count(discretization.n_unknowns(), "row") +
               ", " + std::to_string(discretization.stiffness.nonZeros()) + " stiffness entries");
   session.add_diagnostics(discretization.diagnostics);
   return discretization;
@@ -133,16 +180,35 @@ void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surf
                  "trace of the stiffness. Of cells: least squared volume,\n"
                  "or the mean")
       ->check(CLI::IsMember(names(kVirtualPoints)))
-      ->capture_default_str()
+      ->default_str("area")
       ->group("Operator");
   app.add_option("--weights", options.weights,
                  "Which affine weights give that point on faces that are\n"
                  "not planar")
       ->check(CLI::IsMember(names(kWeights)))
-      ->capture_default_str()
+      ->default_str("in-plane")
       ->group("Operator");
-  app.add_flag("--lumped", options.lumped, "Row sums instead of the full mass matrix")
+  app.add_option("--mass", options.mass,
+                 "The mass matrix: full, lumped (row sums) or, for cotan,\n"
+                 "voronoi; the default is the operator's own")
+      ->check(CLI::IsMember(names(kMasses)))
+      ->default_str("default")
       ->group("Operator");
+  app.add_flag_callback(
+         "--lumped", [&options] { options.mass = "lumped"; }, "--mass lumped")
+      ->excludes("--mass")
+      ->group("Operator");
+  app.add_option("--lambda", options.lambda,
+                 "Weight of the stabilising term of the operators that have\n"
+                 "one; the default is the operator's own")
+      ->check(CLI::PositiveNumber)
+      ->group("Operator");
+  if (!surfaces_only)
+    app.add_option("--boundary-unknowns", options.boundary_unknowns,
+                   "Operators with unknowns at faces: keep those of boundary\n"
+                   "faces and edges, or eliminate them as means of their vertices")
+        ->check(CLI::IsMember(names(kBoundaryUnknowns)))
+        ->group("Operator");
   app.add_flag("--strict", options.strict,
                "Fail on degenerate elements instead of leaving them out")
       ->group("Operator");
@@ -160,12 +226,6 @@ Discretization discretize(Session& session, const PolyhedralMesh& mesh,
                           const OperatorOptions& options, DiscretizationParts parts,
                           const Coefficient& coefficient) {
   return discretize_mesh(session, mesh, options, parts, coefficient);
-}
-
-Json to_json(const OperatorOptions& options) {
-  return {{"operator", options.name},   {"virtual_point", options.virtual_point},
-          {"weights", options.weights}, {"lumped", options.lumped},
-          {"strict", options.strict},   {"keep_flipped", options.keep_flipped}};
 }
 
 }  // namespace carat::cli

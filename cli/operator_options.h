@@ -2,6 +2,7 @@
 // What the commands that build operators share.
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "carat/operators/registry.h"
@@ -14,10 +15,12 @@ class App;
 namespace carat::cli {
 
 struct OperatorOptions {
-  std::string name;  ///< empty: the default of the mesh's kind
-  std::string virtual_point = "area";
-  std::string weights = "in-plane";
-  bool lumped = false;
+  std::string name;           ///< empty: the default of the mesh's kind
+  std::string virtual_point;  ///< empty, like all below: the library's default
+  std::string weights;
+  std::string mass;
+  std::optional<double> lambda;
+  std::string boundary_unknowns;
   bool strict = false;
   bool keep_flipped = false;
 };
@@ -39,8 +42,5 @@ Discretization discretize(Session& session, const PolygonMesh& mesh, const Opera
 Discretization discretize(Session& session, const PolyhedralMesh& mesh,
                           const OperatorOptions& options, DiscretizationParts parts,
                           const Coefficient& coefficient = {});
-
-/// The options as an object for JSON.
-Json to_json(const OperatorOptions& options);
 
 }  // namespace carat::cli

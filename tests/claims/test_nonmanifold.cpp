@@ -21,7 +21,7 @@ TEST(Nonmanifold, unusual_meshes_keep_the_structural_claims) {
       EXPECT_LT(row_sum_defect(d.stiffness), rounding);
       EXPECT_LT(factorisation_defect(d.stiffness, d.divergence(), d.gradient), rounding);
       EXPECT_LT(mass_defect(d.mass, refinement_area(named.mesh)), 1e-13);
-      EXPECT_LT(mass_defect(discretize(named.mesh, name, {.lumped_mass = true}).mass,
+      EXPECT_LT(mass_defect(discretize(named.mesh, name, {.mass = MassKind::Lumped}).mass,
                             refinement_area(named.mesh)),
                 1e-13);
       const Vector values = relative_eigenvalues(d.stiffness);

@@ -56,7 +56,7 @@ TEST_P(Structure, mass_is_positive_definite_and_sums_to_the_area) {
 TEST_P(Structure, lumped_mass_holds_the_row_sums) {
   const PolygonMesh mesh = GetParam().mesh();
   const Discretization d = discretization(mesh);
-  const Discretization lumped = discretization(mesh, {.lumped_mass = true});
+  const Discretization lumped = discretization(mesh, {.mass = MassKind::Lumped});
   EXPECT_EQ(lumped.mass.nonZeros(), mesh.n_vertices());
   const Vector sums = d.mass * Vector::Ones(mesh.n_vertices());
   const double scale = sums.cwiseAbs().maxCoeff();

@@ -23,7 +23,7 @@ TEST(VolumeCaseCounts, families_and_operators_are_the_known_ones) {
       if (!defined_on(*entry, family)) excluded.insert(std::string(entry->name) + " " + family);
   std::set<std::string> not_tets;
   for (const std::string& family : known)
-    if (family.find("tets") == std::string::npos) not_tets.insert("primal " + family);
+    if (family.find("tets") == std::string::npos) not_tets.insert("primal_tet " + family);
   EXPECT_EQ(excluded, not_tets);
 }
 

@@ -136,7 +136,7 @@ Vector exact_ball_eigenvalues() {
 
 double eigenvalue_rmse(const PolyhedralMesh& mesh, const char* operator_name, bool lumped) {
   DiscretizationOptions options = matrices_only();
-  options.lumped_mass = lumped;
+  options.mass = lumped ? MassKind::Lumped : MassKind::Full;
   const Discretization d = discretize(mesh, operator_name, options);
   const Vector exact = exact_ball_eigenvalues();
   const Vector values = lowest_eigenvalues(d.stiffness, d.mass, boundary_vertices(mesh),

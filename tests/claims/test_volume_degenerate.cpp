@@ -122,7 +122,8 @@ TEST_P(VolumeDegenerate, vertices_without_cells_are_listed_and_have_empty_rows) 
   const PolyhedralMesh mesh = two_components_with_loose_parts();
   const std::vector<Index> loose{4, 9, 10, 11};
   for (const bool lumped : {false, true}) {
-    const Discretization d = discretize(mesh, GetParam()->name, {.lumped_mass = lumped});
+    const Discretization d =
+        discretize(mesh, GetParam()->name, {.mass = lumped ? MassKind::Lumped : MassKind::Full});
     expect_sound(d);
     EXPECT_EQ(listed(d, "unreferenced_vertices"), loose);
     EXPECT_TRUE(listed(d, "excluded_samples").empty());
@@ -220,7 +221,7 @@ TEST(TetrahedraOnly, other_cells_are_refused_by_number) {
                                                                       {5, 1, 0},
                                                                       {5.5, 0.5, 1}}));
   try {
-    discretize(mesh, "primal");
+    discretize(mesh, "primal_tet");
     ADD_FAILURE() << "nothing was thrown";
   } catch (const InvalidMesh& e) {
     EXPECT_EQ(e.elements(), std::vector<Index>{1});

@@ -75,7 +75,7 @@ TEST_P(VolumeStructure, lumped_mass_holds_the_row_sums) {
   const PolyhedralMesh mesh = GetParam().mesh();
   const Discretization d = discretization(mesh, {.parts = DiscretizationParts::Matrices});
   const Discretization lumped =
-      discretization(mesh, {.lumped_mass = true, .parts = DiscretizationParts::Matrices});
+      discretization(mesh, {.mass = MassKind::Lumped, .parts = DiscretizationParts::Matrices});
   EXPECT_EQ(lumped.mass.nonZeros(), mesh.n_vertices());
   const Vector sums = d.mass * Vector::Ones(mesh.n_vertices());
   const double scale = sums.cwiseAbs().maxCoeff();
@@ -167,7 +167,7 @@ class TetStructure : public VolumeClaimTest {};
 
 TEST_P(TetStructure, equals_linear_elements_exactly_where_claimed) {
   const PolyhedralMesh mesh = GetParam().mesh();
-  const Discretization d = discretization(mesh), primal = discretize(mesh, "primal");
+  const Discretization d = discretization(mesh), primal = discretize(mesh, "primal_tet");
   const double measured = difference(d.stiffness, primal.stiffness);
   if (GetParam().entry->claims.equals_cotan_on_simplices) {
     EXPECT_LT(measured, 1e-12);

@@ -261,7 +261,7 @@ class Outputs(CaratTest):
         self.succeed("operators", "mesh.ply", "-o", "out")
         lumped = self.report("operators", "mesh.ply", "-o", "out", "--lumped")
         kept = json.loads((self.folder / "out/operators.json").read_text())
-        self.assertTrue(kept["options"]["lumped"])
+        self.assertEqual(kept["options"]["mass"], "lumped")
         self.assertEqual(kept["nnz"], lumped["nnz"])
         self.assertEqual(self.files(), sorted(
             ["mesh.ply", "out", "out/notes.txt", *("out/" + f for f in lumped["files"])]))

@@ -49,7 +49,7 @@ class List(CaratTest):
                  for what in ["operators", "families", "formats", "apps"]}
         names = {what: [entry["name"] for entry in entries] for what, entries in lists.items()}
         self.assertEqual(names["operators"],
-                         ["diamond", "bunge", "cotan", "diamond", "bunge", "primal"])
+                         ["diamond", "bunge", "cotan", "diamond", "bunge", "primal_tet"])
         for family in ["sphere-hexagons", "ball-voronoi"]:
             self.assertIn(family, names["families"])
         self.assertIn("vtp", names["formats"])

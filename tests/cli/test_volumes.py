@@ -109,11 +109,11 @@ class Answers(CaratTest):
             self.assertEqual(self.report("eigen", "ball.vtu", "-k", 1, "--operator", operator)
                              ["options"]["operator"], operator)
         self.fail_with(2, "eigen", "ball.vtu", "--operator", "cotan",
-                       says=["--operator cotan", "volumes", "diamond, bunge, primal"])
+                       says=["--operator cotan", "volumes", "diamond, bunge, primal_tet"])
         self.fail_with(2, "eigen", "ball.vtu", "--operator", "fem", says="not in {diamond,")
-        self.fail_with(3, "eigen", "ball.vtu", "--operator", "primal", says="tetrahedra")
+        self.fail_with(3, "eigen", "ball.vtu", "--operator", "primal_tet", says="tetrahedra")
         self.generate("sphere-quads", 0, "sphere.ply")
-        self.fail_with(2, "poisson", "sphere.ply", "--rhs", "x", "--operator", "primal",
+        self.fail_with(2, "poisson", "sphere.ply", "--rhs", "x", "--operator", "primal_tet",
                        says=["surfaces", "diamond, bunge, cotan"])
 
     def test_kinds_that_do_not_fit(self):
@@ -178,7 +178,7 @@ class Matrices(CaratTest):
 
     def test_others(self):
         self.check("cube-prisms", "bunge")
-        self.check("cube-tets", "primal")
+        self.check("cube-tets", "primal_tet")
 
 
 class Poisson(CaratTest):

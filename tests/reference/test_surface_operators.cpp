@@ -67,7 +67,7 @@ TEST_P(SurfaceReference, bunge) {
   const Discretization d = discretize(mesh(), "bunge", opts);
   EXPECT_LT(difference(d.stiffness, reference("bunge_stiffness")), kAgreement);
   EXPECT_LT(difference(d.mass, reference("bunge_mass")), kAgreement);
-  opts.lumped_mass = true;
+  opts.mass = MassKind::Lumped;
   EXPECT_LT(difference(discretize(mesh(), "bunge", opts).mass, reference("bunge_mass_lumped")),
             kAgreement);
 }

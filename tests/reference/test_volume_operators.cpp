@@ -34,12 +34,12 @@ class VolumeReference : public testing::TestWithParam<const char*> {
   }
   void expect_bunge(VirtualPoint point, const std::string& prefix) const {
     DiscretizationOptions opts = options(point);
-    opts.lumped_mass = true;
+    opts.mass = MassKind::Lumped;
     const Discretization d = discretize(mesh(), "bunge", opts);
     expect_agreement(d.stiffness, prefix + "_stiffness");
     expect_agreement(d.mass, prefix + "_mass_lumped");
     // The consistent mass has the same row sums.
-    opts.lumped_mass = false;
+    opts.mass = MassKind::Full;
     const Vector sums = discretize(mesh(), "bunge", opts).lumped_mass();
     EXPECT_LT((sums - Vector(d.mass.diagonal())).cwiseAbs().maxCoeff(),
               kAgreement * sums.maxCoeff());
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, VolumeReference,
 class TetReference : public VolumeReference {};
 
 TEST_P(TetReference, cotan) {
-  expect_agreement(discretize(mesh(), "primal").stiffness, "cotan_stiffness");
+  expect_agreement(discretize(mesh(), "primal_tet").stiffness, "cotan_stiffness");
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, TetReference, testing::Values("tet_cube"),

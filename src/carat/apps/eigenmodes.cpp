@@ -3,11 +3,13 @@
 #include <string>
 
 #include "carat/base/error.h"
+#include "carat/operators/common.h"
 
 namespace carat {
 
 EigenPairs eigenmodes(const Discretization& discretization, Index count,
                       const std::vector<Index>& dirichlet_vertices) {
+  require_vertex_unknowns(discretization, "eigenmodes");
   const Index n = discretization.n_vertices();
   std::vector<bool> fixed(static_cast<std::size_t>(n), false);
   for (const Index v : dirichlet_vertices) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "carat/base/error.h"
+#include "carat/operators/common.h"
 
 namespace carat {
 namespace {
@@ -32,12 +33,13 @@ HeatGeodesics::HeatGeodesics(const PolygonMesh& mesh, Discretization discretizat
   if (!(options.t_coef > 0) || !std::isfinite(options.t_coef))
     throw InvalidOption("t_coef is " + std::to_string(options.t_coef) +
                         "; it must be a positive number");
+  require_vertex_unknowns(discretization_, "heat geodesics");
   if (discretization_.n_vertices() != mesh.n_vertices())
     throw InvalidOption("the discretization has " + std::to_string(discretization_.n_vertices()) +
                         " vertices, the mesh " + std::to_string(mesh.n_vertices()));
   if (discretization_.gradient_dimension == 0)
-    throw InvalidOption(
-        "the discretization has no gradient; ask for DiscretizationParts::Gradient");
+    throw InvalidOption("heat geodesics need a gradient: the operator " + discretization_.name +
+                        " defines none, or it was not asked for (DiscretizationParts::Gradient)");
   const double h = step_length(mesh, options.length);
   time_step_ = options.t_coef * h * h;
   const SparseMatrix heat = discretization_.mass + time_step_ * discretization_.stiffness;
@@ -84,25 +86,15 @@ GeodesicDistance HeatGeodesics::distance(const std::vector<GeodesicSource>& sour
   GeodesicDistance result;
   std::vector<bool> reached(static_cast<std::size_t>(poisson_->n_components()), false);
   for (const GeodesicSource& source : sources) reached[component[source.vertex]] = true;
-  const Index dimension = discretization_.gradient_dimension;
+  const std::vector<bool> vanished = discretization_.normalise_samples(directions);
   for (Index s = 0; s < discretization_.n_samples(); ++s) {
-    auto g = directions.segment(Eigen::Index{s} * dimension, dimension);
-    // Scaled before squaring: far from the source the squares would vanish.
-    const double scale = g.lpNorm<Eigen::Infinity>();
-    if (scale >= std::numeric_limits<double>::min()) {
-      g /= -scale;
-      g.normalize();
-    } else {
-      g.setZero();
-      if (discretization_.sample_measure[s] > 0) {
-        const SparseMatrix::InnerIterator entry(discretization_.gradient,
-                                                static_cast<Eigen::Index>(s) * dimension);
-        if (entry && component[entry.col()] >= 0 && reached[component[entry.col()]])
-          ++result.unresolved_samples;
-      }
-    }
+    if (!vanished[static_cast<std::size_t>(s)] || !(discretization_.sample_measure[s] > 0))
+      continue;
+    const SparseMatrix::InnerIterator entry(discretization_.gradient, discretization_.first_row(s));
+    if (entry && component[entry.col()] >= 0 && reached[component[entry.col()]])
+      ++result.unresolved_samples;
   }
-  result.values = poisson_->solve(-discretization_.apply_divergence(directions));
+  result.values = poisson_->solve(discretization_.apply_divergence(directions));
 
   std::vector<double> shift(reached.size(), 0), count(reached.size(), 0);
   for (const GeodesicSource& source : sources) {

@@ -4,6 +4,7 @@
 
 #include "carat/base/error.h"
 #include "carat/mesh/statistics.h"
+#include "carat/operators/common.h"
 #include "carat/solve/spd_solver.h"
 
 namespace carat {
@@ -11,6 +12,7 @@ namespace carat {
 MeanCurvature mean_curvature(const PolygonMesh& mesh, const Discretization& discretization,
                              bool with_sign) {
   const Index n = mesh.n_vertices();
+  require_vertex_unknowns(discretization, "mean curvature");
   if (discretization.n_vertices() != n)
     throw InvalidOption("the discretization has " + std::to_string(discretization.n_vertices()) +
                         " vertices, the mesh " + std::to_string(n));

@@ -27,6 +27,8 @@ struct VirtualVertexRule {
   AffineWeights weights = AffineWeights::InPlane;
   /// Move a point that flips a virtual triangle to the centroid of the face's kernel.
   bool keep_in_kernel = true;
+
+  bool operator==(const VirtualVertexRule&) const = default;
 };
 
 /// How the virtual vertex of a face came about.

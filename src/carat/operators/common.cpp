@@ -14,6 +14,14 @@ std::string number(double value) {
   return text;
 }
 
+void require_vertex_unknowns(const Discretization& discretization, const std::string& application) {
+  if (discretization.extra.size() > 0)
+    throw InvalidOption(application + ": the operator " + discretization.name + " has " +
+                        std::to_string(discretization.extra.size()) +
+                        " unknowns beyond the vertices; choose an operator between vertices, e.g. "
+                        "diamond");
+}
+
 double coefficient_at(const DiscretizationOptions& options, const Vec3& centroid) {
   const double k = options.coefficient(centroid);
   if (!(std::isfinite(k) && k > 0))

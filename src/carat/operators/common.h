@@ -9,6 +9,9 @@
 
 namespace carat {
 
+/// \throws InvalidOption  the operator has unknowns beyond the vertices
+void require_vertex_unknowns(const Discretization& discretization, const std::string& application);
+
 /// K at the centroid of a sample.
 /// \throws InvalidOption  K is not a positive finite number there
 double coefficient_at(const DiscretizationOptions& options, const Vec3& centroid);

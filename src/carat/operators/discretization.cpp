@@ -1,5 +1,8 @@
 #include "carat/operators/discretization.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "carat/base/error.h"
@@ -9,12 +12,13 @@ namespace {
 
 void require_gradient(const Discretization& d, Eigen::Index n_values) {
   if (d.gradient_dimension == 0)
-    throw InvalidOption("the gradient was not computed; ask for DiscretizationParts::Gradient");
-  const Eigen::Index expected = Eigen::Index{d.gradient_dimension} * d.n_samples();
+    throw InvalidOption("the operator " + d.name +
+                        " defines no gradient, or it was not asked for: "
+                        "DiscretizationParts::Gradient");
+  const Eigen::Index expected = d.first_row(d.n_samples());
   if (n_values != expected)
     throw InvalidOption(std::to_string(n_values) + " gradient values; there are " +
-                        std::to_string(expected) + " (" + std::to_string(d.gradient_dimension) +
-                        " a sample)");
+                        std::to_string(expected));
 }
 
 /// Sums measure * axes * g of every part into rows chosen by `visit(part, add)`, then divides.
@@ -26,11 +30,14 @@ Points average_parts(const Discretization& d, const Vector& vectors, Index n_row
     throw InvalidOption("the frames were not computed; ask for DiscretizationParts::Frames");
   Points sum = Points::Zero(n_rows, 3);
   Vector measure = Vector::Zero(n_rows);
+  Vector sharpened;
+  if (d.is_one_form()) sharpened = d.one_forms.sharp * vectors;
   for (std::size_t k = 0; k < d.frames.parts.size(); ++k) {
     const GradientFrames::Part& part = d.frames.parts[k];
-    const Eigen::Index first = Eigen::Index{part.sample} * d.gradient_dimension;
-    const Vec3 vector = d.frames.axes.empty() ? Vec3(vectors.segment<3>(first))
-                                              : d.frames.axes[k] * vectors.segment<2>(first);
+    const Eigen::Index first = d.first_row(part.sample);
+    const Vec3 vector = d.is_one_form() ? Vec3(sharpened.segment<3>(3 * Eigen::Index{part.sample}))
+                        : d.frames.axes.empty() ? Vec3(vectors.segment<3>(first))
+                                                : d.frames.axes[k] * vectors.segment<2>(first);
     visit(part, [&](Index row) {
       sum.row(row) += part.measure * vector.transpose();
       measure[row] += part.measure;
@@ -41,10 +48,26 @@ Points average_parts(const Discretization& d, const Vector& vectors, Index n_row
   return sum;
 }
 
+/// Root of the mean square over the sample's face.
+double one_form_length(const Discretization& d, Index sample, const Eigen::Ref<const Vector>& g) {
+  if (!(d.sample_measure[sample] > 0)) return 0;
+  const Eigen::Index first = d.first_row(sample);
+  double energy = 0;
+  for (Eigen::Index row = 0; row < g.size(); ++row)
+    for (SparseMatrix::InnerIterator entry(d.one_forms.inner_product, first + row); entry; ++entry)
+      energy += g[row] * entry.value() * g[entry.col() - first];
+  return std::sqrt(std::max(0.0, energy) / d.sample_measure[sample]);
+}
+
 }  // namespace
 
 SparseMatrix Discretization::divergence() const {
   require_gradient(*this, gradient.rows());
+  if (is_one_form()) {
+    SparseMatrix weighted = one_forms.inner_product * gradient;
+    weighted *= -1;
+    return weighted.transpose();
+  }
   SparseMatrix weighted = gradient;
   for (Index row = 0; row < weighted.rows(); ++row) {
     const double measure = -sample_measure[row / gradient_dimension];
@@ -56,10 +79,33 @@ SparseMatrix Discretization::divergence() const {
 
 Vector Discretization::apply_divergence(const Vector& vectors) const {
   require_gradient(*this, vectors.size());
+  if (is_one_form()) return gradient.transpose() * (one_forms.inner_product * -vectors);
   Vector weighted(vectors.size());
   for (Eigen::Index row = 0; row < vectors.size(); ++row)
     weighted[row] = -vectors[row] * sample_measure[row / gradient_dimension];
   return gradient.transpose() * weighted;
+}
+
+std::vector<bool> Discretization::normalise_samples(Vector& vectors) const {
+  require_gradient(*this, vectors.size());
+  std::vector<bool> vanished(static_cast<std::size_t>(n_samples()), false);
+  for (Index s = 0; s < n_samples(); ++s) {
+    auto g = vectors.segment(first_row(s), first_row(s + 1) - first_row(s));
+    // Scaled before squaring, where the squares of small values would vanish.
+    const double scale = g.size() > 0 ? g.lpNorm<Eigen::Infinity>() : 0;
+    double length = 0;
+    if (scale >= std::numeric_limits<double>::min()) {
+      g /= scale;
+      length = is_one_form() ? one_form_length(*this, s, g) : g.norm();
+    }
+    if (length > 0) {
+      g /= length;
+    } else {
+      g.setZero();
+      vanished[static_cast<std::size_t>(s)] = true;
+    }
+  }
+  return vanished;
 }
 
 Points Discretization::element_vectors(const Vector& vectors, Index n_elements) const {

@@ -27,10 +27,23 @@ enum class DiscretizationParts {
   Frames,    ///< also what turns gradients into 3-D vectors
 };
 
+/// Which mass matrix. An operator has one or several of them.
+enum class MassKind {
+  Default,  ///< the first of the operator's own, see OperatorEntry::options
+  Full,     ///< the operator's own inner product: linear elements, or P^T M P
+  Lumped,   ///< its row sums
+  Voronoi,  ///< diagonal: mixed Voronoi areas (Meyer, Desbrun, Schroeder, Barr 2003)
+};
+
+/// An option that an operator has no use for is an error; see OperatorEntry::options.
 struct DiscretizationOptions {
   VirtualVertexRule virtual_vertex{};
-  /// Row sums instead of the operator's own mass matrix.
-  bool lumped_mass = false;
+  MassKind mass = MassKind::Default;
+  /// Weight of the stabilising term, > 0; default: the operator's own.
+  std::optional<double> lambda{};
+  /// Keep values of boundary faces and edges as unknowns, or eliminate them as means of their
+  /// vertices; default: the operator's own.
+  std::optional<bool> boundary_unknowns{};
   DegeneratePolicy degenerate = DegeneratePolicy::Report;
   /// A sample whose measure is <= eps_rel * (its diameter)^2, in volumes ^3, is degenerate. At the
   /// default only rounding noise is.
@@ -59,34 +72,71 @@ struct GradientFrames {
   std::vector<Eigen::Matrix<double, 3, 2>> axes;
 };
 
+/// Unknowns beyond the vertices, numbered after them: blocks of values at faces, cells, edges.
+struct ExtraUnknowns {
+  enum class Site { Face, Cell, Edge };
+  struct Block {
+    Site site;
+    std::vector<Index> elements;  ///< their ids in the mesh; edges as in its face_mesh()
+  };
+  std::vector<Block> blocks;
+  Points positions;  ///< one a row: where it is a value of the function  [length]
+  /// Row k: the vertices of the boundary face or edge that unknown k lies on; empty inside.
+  Csr boundary_vertices;
+
+  Index size() const { return static_cast<Index>(positions.rows()); }
+};
+
+/// Gradients that are differences along the sides of faces: one value a side instead of components
+/// of a vector. Empty where gradients are vectors.
+struct OneForms {
+  Array<Index> first;          ///< sample -> its first row of the gradient; last: number of rows
+  SparseMatrix inner_product;  ///< (rows, rows), one positive semidefinite block a sample
+  SparseMatrix sharp;          ///< (3 * samples, rows): the vector of a sample  [1/length]
+};
+
 /// The discrete operators of one mesh and method: an immutable value.
 ///
 /// Integrated (weak) quantities: stiffness S is symmetric positive semidefinite,
-/// laplacian L = -S = D G; its pointwise form is a solve with the mass M. With K = 1:
-/// divergence D = -G^T M_s, M_s holding each sample's measure once a component.
+/// laplacian L = -S; its pointwise form is a solve with the mass M. With K = 1:
+/// divergence D = -G^T M_s, M_s holding each sample's measure once a component or, for one-forms,
+/// their inner product; L = D G for operators without a stabilising term of their own.
 struct Discretization {
   std::string name;        ///< registry name of the operator
-  SparseMatrix stiffness;  ///< (V, V)  [1 on surfaces, length in volumes]
-  /// (V, V), sum = area or volume of the virtual refinement  [length^2, length^3]
+  SparseMatrix stiffness;  ///< (N, N), N = V + extra unknowns  [1 on surfaces, length in volumes]
+  /// (N, N), sum = area or volume of the virtual refinement  [length^2, length^3]
   SparseMatrix mass;
-  /// (dimension * samples, V); component k of sample s in row dimension * s + k.  [1/length]
-  /// Empty unless asked for.
+  ExtraUnknowns extra;  ///< none for most operators
+  /// (dimension * samples, N); component k of sample s in row dimension * s + k.  [1/length]
+  /// One-forms: (rows, N), differences.  [1]
+  /// Empty unless asked for, and for operators that define none.
   SparseMatrix gradient;
-  Index gradient_dimension = 0;
+  Index gradient_dimension = 0;  ///< 1: one-forms
+  OneForms one_forms;
   Vector sample_measure;  ///< area or volume of every sample, 0 where degenerate
   GradientFrames frames;  ///< empty unless asked for
   Diagnostics diagnostics;
 
-  Index n_vertices() const { return static_cast<Index>(stiffness.rows()); }
+  Index n_unknowns() const { return static_cast<Index>(stiffness.rows()); }
+  Index n_vertices() const { return n_unknowns() - extra.size(); }
   Index n_samples() const { return static_cast<Index>(sample_measure.size()); }
+  bool is_one_form() const { return gradient_dimension == 1; }
+  /// First row of a sample in the gradient; of the one past the last: number of rows.
+  Eigen::Index first_row(Index sample) const {
+    return is_one_form() ? one_forms.first[static_cast<std::size_t>(sample)]
+                         : Eigen::Index{gradient_dimension} * sample;
+  }
 
   /// L = -S.
   SparseMatrix laplacian() const { return -stiffness; }
-  /// D = -G^T M_s, (V, dimension * samples).  [BBA21 (20)]
+  /// D = -G^T M_s, (N, rows of the gradient).  [BBA21 (20)]
   /// \throws InvalidOption  the gradient was not asked for
   SparseMatrix divergence() const;
   /// D X without forming D. \param vectors  one gradient-like value a row of the gradient
   Vector apply_divergence(const Vector& vectors) const;
+  /// Scales every sample to unit length, by its inner product for one-forms; those without a
+  /// length become zero. -> flags of the samples that did
+  std::vector<bool> normalise_samples(Vector& vectors) const;
   /// Integrated row sums of the mass.
   Vector lumped_mass() const { return mass * Vector::Ones(mass.cols()); }
 

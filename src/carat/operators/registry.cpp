@@ -1,8 +1,19 @@
 #include "carat/operators/registry.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "carat/base/error.h"
+#include "carat/operators/common.h"
 
 namespace carat {
+
+#define CARAT_SURFACE_OPERATOR(name) extern const SurfaceOperator name##_surface_operator;
+#define CARAT_VOLUME_OPERATOR(name) extern const VolumeOperator name##_volume_operator;
+#include "carat/operators/operators.def"
+#undef CARAT_SURFACE_OPERATOR
+#undef CARAT_VOLUME_OPERATOR
+
 namespace {
 
 template <class Entry>
@@ -16,6 +27,43 @@ const Entry& find_operator(const std::vector<const Entry*>& operators, const std
   throw InvalidOption("operator '" + name + "' is not known on " + kind + "; known are: " + known);
 }
 
+std::string masses_in_words(const std::vector<MassKind>& masses) {
+  std::string list;
+  for (const MassKind kind : masses)
+    list.append(list.empty() ? "" : ", ").append(mass_kind_name(kind));
+  return list;
+}
+
+/// The options with the operator's own defaults in place of what was left open.
+/// \throws InvalidOption  one that it has no use for, or a bad value
+DiscretizationOptions settle_options(const std::string& name, const OperatorOptionSet& taken,
+                                     const DiscretizationOptions& wanted) {
+  DiscretizationOptions options = wanted;
+  if (options.mass == MassKind::Default) options.mass = taken.masses.front();
+  if (std::find(taken.masses.begin(), taken.masses.end(), options.mass) == taken.masses.end())
+    throw InvalidOption("the operator " + name + " has no " + mass_kind_name(options.mass) +
+                        " mass; it has: " + masses_in_words(taken.masses));
+  if (!taken.virtual_vertex && !(options.virtual_vertex == VirtualVertexRule{}))
+    throw InvalidOption("the operator " + name +
+                        " has no virtual vertices; leave out where they lie, their weights and "
+                        "whether they stay in the kernel");
+  if (!taken.lambda && options.lambda)
+    throw InvalidOption("the operator " + name + " has no stabilising term; leave out lambda");
+  if (options.lambda && !(*options.lambda > 0 && std::isfinite(*options.lambda)))
+    throw InvalidOption("lambda is " + number(*options.lambda) +
+                        "; it must be a positive finite number");
+  if (taken.lambda && !options.lambda) options.lambda = taken.lambda;
+  if (!taken.boundary_unknowns && options.boundary_unknowns)
+    throw InvalidOption("the operator " + name +
+                        " has no unknowns on boundary faces; leave out boundary_unknowns");
+  if (taken.boundary_unknowns && !options.boundary_unknowns)
+    options.boundary_unknowns = taken.boundary_unknowns;
+  if (!taken.tensor_coefficient && options.cell_coefficient.cols() == 6)
+    throw InvalidOption("the operator " + name +
+                        " takes scalars a cell as coefficient, not tensors");
+  return options;
+}
+
 template <class Entry, class Mesh>
 Discretization both_phases(const Entry& entry, const Mesh& mesh,
                            const DiscretizationOptions& options) {
@@ -25,6 +73,33 @@ Discretization both_phases(const Entry& entry, const Mesh& mesh,
 }
 
 }  // namespace
+
+const char* mass_kind_name(MassKind kind) {
+  switch (kind) {
+    case MassKind::Full:
+      return "full";
+    case MassKind::Lumped:
+      return "lumped";
+    case MassKind::Voronoi:
+      return "voronoi";
+    default:
+      return "default";
+  }
+}
+
+template <class Mesh>
+std::unique_ptr<Assembly> OperatorEntry<Mesh>::prepare(const Mesh& mesh,
+                                                       const DiscretizationOptions& wanted) const {
+  return make(mesh, settle(wanted));
+}
+
+template <class Mesh>
+DiscretizationOptions OperatorEntry<Mesh>::settle(const DiscretizationOptions& wanted) const {
+  return settle_options(name, options, wanted);
+}
+
+template struct OperatorEntry<PolygonMesh>;
+template struct OperatorEntry<PolyhedralMesh>;
 
 const std::vector<const SurfaceOperator*>& surface_operators() {
   static const std::vector<const SurfaceOperator*> operators = {

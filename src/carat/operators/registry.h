@@ -2,6 +2,7 @@
 // All operators by name.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,16 +11,44 @@
 
 namespace carat {
 
-/// What the literature promises of an operator; the claim tests hold it to that.
+/// What the literature promises of an operator; the claim tests hold it to that. Where it denies a
+/// property, the tests assert that it fails somewhere.
 struct OperatorClaims {
   bool symmetric = true;
-  bool semidefinite = true;         ///< stiffness is positive semidefinite
-  bool kernel_is_constants = true;  ///< one dimension a connected component
-  bool linear_precision = true;     ///< S x = 0 at inner vertices of planar and volume meshes
+  bool semidefinite = true;            ///< stiffness is positive semidefinite
+  bool kernel_is_constants = true;     ///< one dimension a connected component
+  bool linear_precision = true;        ///< S x = 0 at inner vertices of planar and volume meshes
+  bool gradient = true;                ///< defines a gradient
+  bool divergence_of_gradient = true;  ///< L = D G; no stabilising term beside it
+  /// The mass sums to the measure of the virtual refinement, not of vector areas.
+  bool total_mass = true;
+  bool positive_mass = true;  ///< the mass is positive definite on any sound mesh
+  /// No positive entry off the diagonal of S in rows of inner vertices of Delaunay meshes.
+  bool maximum_principle = false;
+  bool second_order = true;  ///< Poisson's equation, error at the vertices
   /// On triangles, tetrahedra: linear finite elements.
   bool equals_cotan_on_simplices = false;
   bool simplices_only = false;  ///< defined on triangles, tetrahedra only
   bool face_local = false;      ///< couples vertices of common faces, in volumes cells, only
+  bool vertex_unknowns = true;  ///< no unknowns beyond the vertices
+};
+
+/// Which of DiscretizationOptions an operator has a use for; the others are errors.
+struct OperatorOptionSet {
+  std::vector<MassKind> masses{MassKind::Full, MassKind::Lumped};  ///< the default first
+  bool virtual_vertex = false;
+  std::optional<double> lambda{};           ///< its default
+  std::optional<bool> boundary_unknowns{};  ///< its default
+  bool tensor_coefficient = true;           ///< symmetric tensors in cell_coefficient
+};
+
+/// What a user wants to know before choosing; docs/operators.md is made of it.
+struct OperatorCard {
+  const char* definition;  ///< the formula, in words and symbols
+  const char* unknowns;
+  const char* sparsity;
+  const char* when;  ///< when to use it, and when not
+  const char* references;
 };
 
 /// One operator on meshes of one kind.
@@ -29,17 +58,24 @@ struct OperatorEntry {
   const char* title;     ///< one line
   const char* citation;  ///< where it comes from
   OperatorClaims claims;
-  /// Runs the symbolic phase.
-  std::unique_ptr<Assembly> (*prepare)(const Mesh&, const DiscretizationOptions&);
+  OperatorOptionSet options;
+  OperatorCard card;
+  /// The symbolic phase, with options that have been checked and hold no default.
+  std::unique_ptr<Assembly> (*make)(const Mesh&, const DiscretizationOptions&);
+
+  /// The options with the operator's own defaults in place of what was left open.
+  /// \throws InvalidOption  one that the operator has no use for, or a bad value
+  DiscretizationOptions settle(const DiscretizationOptions& options) const;
+  /// Settles the options and runs the symbolic phase.
+  /// \throws InvalidOption  as settle()
+  /// \throws InvalidMesh    a simplex operator on other elements
+  std::unique_ptr<Assembly> prepare(const Mesh& mesh, const DiscretizationOptions& options) const;
 };
 using SurfaceOperator = OperatorEntry<PolygonMesh>;
 using VolumeOperator = OperatorEntry<PolyhedralMesh>;
 
-#define CARAT_SURFACE_OPERATOR(name) extern const SurfaceOperator name##_surface_operator;
-#define CARAT_VOLUME_OPERATOR(name) extern const VolumeOperator name##_volume_operator;
-#include "carat/operators/operators.def"
-#undef CARAT_SURFACE_OPERATOR
-#undef CARAT_VOLUME_OPERATOR
+/// "full", "lumped", "voronoi", "default".
+const char* mass_kind_name(MassKind kind);
 
 /// In the order of operators.def; the first is the default.
 const std::vector<const SurfaceOperator*>& surface_operators();

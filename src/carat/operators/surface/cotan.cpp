@@ -1,5 +1,6 @@
 // The cotan Laplacian of triangle meshes: Pinkall, Polthier 1993; Desbrun, Meyer, Schroeder,
-// Barr 1999. S_ij = -(cot a + cot b)/2; the mass is lumped by thirds of triangles.
+// Barr 1999. S_ij = -(cot a + cot b)/2; the mass is lumped by thirds of triangles,
+// or mixed Voronoi areas, or that of linear elements.
 
 #include "carat/kernels/cotan.h"
 
@@ -26,7 +27,8 @@ class CotanAssembly final : public Assembly {
                           {f});
     result_.name = "cotan";
     result_.stiffness = face_pattern(incidence_, options_.threads);
-    result_.mass = diagonal_pattern(mesh_.n_vertices());
+    result_.mass =
+        options_.mass == MassKind::Full ? result_.stiffness : diagonal_pattern(mesh_.n_vertices());
     result_.sample_measure.resize(mesh_.n_faces());
     if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
   }
@@ -39,9 +41,7 @@ class CotanAssembly final : public Assembly {
                            if (a == b) return (cot[(a + 1) % 3] + cot[(a + 2) % 3]) / 2;
                            return -cot[3 - a - b] / 2;
                          });
-    assemble_face_blocks(
-        result_.mass, incidence_, true, options_.threads,
-        [&](Index f, Index a, Index b) { return a == b ? result_.sample_measure[f] / 3 : 0.0; });
+    assemble_mass();
     if (options_.parts != DiscretizationParts::Matrices) assemble_gradient(points);
     if (options_.parts == DiscretizationParts::Frames) collect_frames();
     report();
@@ -52,8 +52,32 @@ class CotanAssembly final : public Assembly {
     return points.row(mesh_.face(f)[static_cast<std::size_t>(a)]).transpose();
   }
 
+  void assemble_mass() {
+    if (options_.mass == MassKind::Voronoi)
+      assemble_face_blocks(
+          result_.mass, incidence_, true, options_.threads,
+          [&](Index f, Index a, Index b) { return a == b ? voronoi_areas_[3 * f + a] : 0.0; });
+    else
+      assemble_face_blocks(
+          result_.mass, incidence_, options_.mass == MassKind::Lumped, options_.threads,
+          [&](Index f, Index a, Index b) { return result_.sample_measure[f] / (a == b ? 6 : 12); });
+  }
+
+  /// Where the triangle is not obtuse, the part of it that is nearest to corner a; otherwise half
+  /// of it to the obtuse corner and a quarter to the others.
+  static double voronoi_area(const double* squared_sides, double double_area, Index a) {
+    const auto cosine = [&](Index k) {  // up to the product of two sides
+      return squared_sides[(k + 1) % 3] + squared_sides[(k + 2) % 3] - squared_sides[k];
+    };
+    for (Index k = 0; k < 3; ++k)
+      if (cosine(k) < 0) return double_area / (k == a ? 4 : 8);
+    const Index b = (a + 1) % 3, c = (a + 2) % 3;
+    return (squared_sides[b] * cosine(b) + squared_sides[c] * cosine(c)) / (16 * double_area);
+  }
+
   void compute_terms(const Points& points) {
     cotangents_.resize(3 * static_cast<std::size_t>(mesh_.n_faces()));
+    if (options_.mass == MassKind::Voronoi) voronoi_areas_.resize(cotangents_.size());
     Array<double> coefficient;
     if (options_.coefficient) {
       coefficient.resize(static_cast<std::size_t>(mesh_.n_faces()));
@@ -74,6 +98,12 @@ class CotanAssembly final : public Assembly {
         const bool sound = double_area > 2 * options_.eps_rel * size2;
         const double k = sound && options_.coefficient ? coefficient[f] : 1.0;
         result_.sample_measure[f] = sound ? double_area / 2 : 0;
+        if (options_.mass == MassKind::Voronoi) {
+          const double squared[3] = {side[0].squaredNorm(), side[1].squaredNorm(),
+                                     side[2].squaredNorm()};
+          for (Index a = 0; a < 3; ++a)
+            voronoi_areas_[3 * f + a] = sound ? voronoi_area(squared, double_area, a) : 0;
+        }
         for (Index a = 0; a < 3; ++a)
           cotangents_[3 * f + a] =
               sound ? -k * side[(a + 1) % 3].dot(side[(a + 2) % 3]) / double_area : 0;
@@ -143,21 +173,27 @@ class CotanAssembly final : public Assembly {
   DiscretizationOptions options_;
   SurfaceIncidence incidence_;
   Array<double> cotangents_;  // of the angle at each corner, times K
+  Array<double> voronoi_areas_;
 };
 
 }  // namespace
 
-const SurfaceOperator cotan_surface_operator = {
+extern const SurfaceOperator cotan_surface_operator = {
     "cotan",
     "Cotan Laplacian: linear elements on triangles",
     "Pinkall, Polthier 1993; Desbrun, Meyer, Schroeder, Barr 1999",
-    {.symmetric = true,
-     .semidefinite = true,
-     .kernel_is_constants = true,
-     .linear_precision = true,
+    {.maximum_principle = true,
      .equals_cotan_on_simplices = true,
      .simplices_only = true,
      .face_local = true},
+    {.masses = {MassKind::Lumped, MassKind::Voronoi, MassKind::Full}},
+    {"S_ij = -(cot a + cot b) / 2, a and b opposite to the edge ij. Mass: thirds of the triangles; "
+     "voronoi: mixed Voronoi areas; full: linear elements.",
+     "vertices", "7 entries a row on regular triangles",
+     "The reference on triangle meshes; polygons have to be triangulated first.",
+     "Pinkall, Polthier: Computing Discrete Minimal Surfaces and Their Conjugates, 1993; Meyer, "
+     "Desbrun, Schroeder, Barr: Discrete Differential-Geometry Operators for Triangulated "
+     "2-Manifolds, 2003 (Voronoi areas)"},
     [](const PolygonMesh& mesh, const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
       return std::make_unique<CotanAssembly>(mesh, options);
     }};

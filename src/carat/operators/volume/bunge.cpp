@@ -52,6 +52,7 @@ class VolumeBungeAssembly final : public Assembly {
 
   PolyhedralMesh mesh_;
   DiscretizationOptions options_;
+  bool lumped_ = options_.mass == MassKind::Lumped;
   VolumeIncidence incidence_;
   Array<Index> first_tet_;  // cell -> its first virtual tetrahedron, n_cells + 1 numbers
   VirtualCells virtuals_;
@@ -67,7 +68,7 @@ VolumeBungeAssembly::VolumeBungeAssembly(const PolyhedralMesh& mesh,
   result_.name = "bunge";
   number_tets();
   result_.stiffness = cell_pattern(incidence_, options_.threads);
-  result_.mass = options_.lumped_mass ? diagonal_pattern(mesh_.n_vertices()) : result_.stiffness;
+  result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : result_.stiffness;
   result_.sample_measure.resize(n_tets());
   if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
 }
@@ -297,7 +298,7 @@ void VolumeBungeAssembly::update(const Points& points) {
                        virtuals_.cell_weights, form, options_.threads);
   };
   assemble(result_.stiffness, false, stiffness_);
-  assemble(result_.mass, options_.lumped_mass, mass_);
+  assemble(result_.mass, lumped_, mass_);
   if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
   if (options_.parts == DiscretizationParts::Frames) collect_frames();
   report();
@@ -305,17 +306,17 @@ void VolumeBungeAssembly::update(const Points& points) {
 
 }  // namespace
 
-const VolumeOperator bunge_volume_operator = {
+extern const VolumeOperator bunge_volume_operator = {
     "bunge",
     "Polygon Laplacian: linear elements on virtual tetrahedra",
     "Bunge, Herholz, Kazhdan, Botsch: Polygon Laplacian Made Simple, 2020",
-    {.symmetric = true,
-     .semidefinite = true,
-     .kernel_is_constants = true,
-     .linear_precision = true,
-     .equals_cotan_on_simplices = true,
-     .simplices_only = false,
-     .face_local = true},
+    {.equals_cotan_on_simplices = true, .face_local = true},
+    {.masses = {MassKind::Lumped, MassKind::Full}, .virtual_vertex = true},
+    {"S = P^T S_tet P: linear elements on the tetrahedra of every edge, its face's and its cell's"
+     "virtual vertex. Mass P^T M_tet P, by default its row sums.",
+     "vertices", "vertices of common cells",
+     "Where sparsity counts more than accuracy: half of the diamond's entries and less.",
+     "Bunge, Herholz, Kazhdan, Botsch: Polygon Laplacian Made Simple, 2020"},
     [](const PolyhedralMesh& mesh,
        const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
       return std::make_unique<VolumeBungeAssembly>(mesh, options);

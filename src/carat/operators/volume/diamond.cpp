@@ -61,6 +61,7 @@ class VolumeDiamondAssembly final : public Assembly {
 
   PolyhedralMesh mesh_;
   DiscretizationOptions options_;
+  bool lumped_ = options_.mass == MassKind::Lumped;
   VolumeIncidence incidence_;
   CellRings rings_;
   VirtualCells virtuals_;
@@ -91,8 +92,7 @@ VolumeDiamondAssembly::VolumeDiamondAssembly(const PolyhedralMesh& mesh,
     mesh_.face_mesh().corner_faces();
   }
   result_.stiffness = std::move(patterns.stiffness);
-  result_.mass =
-      options_.lumped_mass ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
+  result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
   result_.sample_measure.resize(n_diamonds());
   if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
 }
@@ -417,14 +417,14 @@ void VolumeDiamondAssembly::update(const Points& points) {
     update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
   // S = -L and M = P^T M^ P   [BBA21 (31), (32)]
   if (tets_) {
-    assemble_tet_diamonds(result_.stiffness, result_.mass, options_.lumped_mass, incidence_,
-                          tet_topology_, options_.threads, tet_workspace_);
+    assemble_tet_diamonds(result_.stiffness, result_.mass, lumped_, incidence_, tet_topology_,
+                          options_.threads, tet_workspace_);
   } else {
     compute_faces();
-    assemble_volume_diamonds(result_.stiffness, result_.mass, options_.lumped_mass, incidence_,
-                             rings_, mesh_.face_mesh().vertex_corners(),
-                             mesh_.face_mesh().corner_faces(), virtuals_.faces.weights,
-                             virtuals_.cell_weights, options_.threads, workspace_);
+    assemble_volume_diamonds(result_.stiffness, result_.mass, lumped_, incidence_, rings_,
+                             mesh_.face_mesh().vertex_corners(), mesh_.face_mesh().corner_faces(),
+                             virtuals_.faces.weights, virtuals_.cell_weights, options_.threads,
+                             workspace_);
   }
   if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
   if (options_.parts == DiscretizationParts::Frames) collect_frames();
@@ -433,17 +433,22 @@ void VolumeDiamondAssembly::update(const Points& points) {
 
 }  // namespace
 
-const VolumeOperator diamond_volume_operator = {
+extern const VolumeOperator diamond_volume_operator = {
     "diamond",
     "Diamond Laplacian: gradients on the minimal diamonds of faces",
     "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021",
-    {.symmetric = true,
-     .semidefinite = true,
-     .kernel_is_constants = true,
-     .linear_precision = true,
-     .equals_cotan_on_simplices = false,
-     .simplices_only = false,
-     .face_local = false},
+    {},
+    {.virtual_vertex = true},
+    {"S = G^T M_d G with one gradient for every edge of every face: linear on the edge, the face's"
+     "virtual vertex and those of the two cells, which are affine combinations of their vertices. "
+     "Mass"
+     "P^T M P, a sixth of a diamond to each vertex of its base and a quarter to each tip.",
+     "vertices", "all vertices of the two cells of a face",
+     "The default: the lowest error with the full mass. Rows couple vertices of neighbouring "
+     "cells, so"
+     "direct solvers take longer than with bunge.",
+     "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021, "
+     "equations (24) to (33)"},
     [](const PolyhedralMesh& mesh,
        const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
       return std::make_unique<VolumeDiamondAssembly>(mesh, options);

@@ -1,6 +1,6 @@
 // The cotan Laplacian of tetrahedral meshes, see Crane 2019: linear elements,
 // S_ij = -1/6 of the sum of l_kl cot(theta_kl), kl the edges opposite to ij; the mass is lumped by
-// quarters of tetrahedra.
+// quarters of tetrahedra, or that of linear elements: V/10, V/20.
 
 #include <algorithm>
 
@@ -15,9 +15,9 @@
 namespace carat {
 namespace {
 
-class PrimalAssembly final : public Assembly {
+class PrimalTetAssembly final : public Assembly {
  public:
-  PrimalAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options);
+  PrimalTetAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options);
   void update(const Points& points) override;
 
  private:
@@ -34,32 +34,34 @@ class PrimalAssembly final : public Assembly {
 
   PolyhedralMesh mesh_;
   DiscretizationOptions options_;
+  bool lumped_ = options_.mass == MassKind::Lumped;
   VolumeIncidence incidence_;
   Array<double> couplings_;  // 16 a cell
   Vec3 origin_ = Vec3::Zero();
   Points points_;  // relative to the origin, so that no accuracy is lost far from it
 };
 
-PrimalAssembly::PrimalAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options)
+PrimalTetAssembly::PrimalTetAssembly(const PolyhedralMesh& mesh,
+                                     const DiscretizationOptions& options)
     : mesh_(mesh), options_(options), incidence_(volume_incidence(mesh_)) {
   for (Index c = 0; c < mesh_.n_cells(); ++c)
     if (mesh_.cells().size(c) != 4 || mesh_.cell_vertices().size(c) != 4)
-      throw InvalidMesh("cell " + std::to_string(c) + " has " +
-                            std::to_string(mesh_.cells().size(c)) + " faces and " +
-                            std::to_string(mesh_.cell_vertices().size(c)) +
-                            " vertices; the primal operator needs tetrahedra: split the cells, or "
-                            "use the operators diamond or bunge",
-                        {c});
+      throw InvalidMesh(
+          "cell " + std::to_string(c) + " has " + std::to_string(mesh_.cells().size(c)) +
+              " faces and " + std::to_string(mesh_.cell_vertices().size(c)) +
+              " vertices; the primal_tet operator needs tetrahedra: split the cells, or "
+              "use the operators diamond or bunge",
+          {c});
   check_cell_coefficient(options_, mesh_.n_cells());
-  result_.name = "primal";
+  result_.name = "primal_tet";
   result_.stiffness = cell_pattern(incidence_, options_.threads);
-  result_.mass = diagonal_pattern(mesh_.n_vertices());
+  result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : result_.stiffness;
   result_.sample_measure.resize(mesh_.n_cells());
   couplings_.resize(16 * static_cast<std::size_t>(mesh_.n_cells()));
   if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
 }
 
-Tetrahedron PrimalAssembly::tet(Index c) const {
+Tetrahedron PrimalTetAssembly::tet(Index c) const {
   const std::span<const Index> v = vertices(c);
   const auto x = [&](std::size_t k) -> Vec3 { return points_.row(v[k]).transpose(); };
   if (mesh_.face_cells()[mesh_.cell(c)[0]].below == c)
@@ -69,7 +71,7 @@ Tetrahedron PrimalAssembly::tet(Index c) const {
   return turned;
 }
 
-void PrimalAssembly::fill_tet(Index c) {
+void PrimalTetAssembly::fill_tet(Index c) {
   double* const s = couplings_.data() + 16 * std::size_t(c);
   const Tetrahedron t = tet(c);
   result_.sample_measure[c] = t.volume();
@@ -92,7 +94,7 @@ void PrimalAssembly::fill_tet(Index c) {
     }
 }
 
-void PrimalAssembly::compute_terms() {
+void PrimalTetAssembly::compute_terms() {
   // The caller's function is not asked to be thread-safe.
   const int threads = options_.coefficient ? 1 : options_.threads;
   parallel_blocks(mesh_.n_cells(), threads, [&](int, Index begin, Index end) {
@@ -100,7 +102,7 @@ void PrimalAssembly::compute_terms() {
   });
 }
 
-void PrimalAssembly::make_gradient_pattern() {
+void PrimalTetAssembly::make_gradient_pattern() {
   if (std::int64_t{mesh_.n_cells()} * 3 > std::numeric_limits<Index>::max())
     throw InvalidMesh("the gradient of " + std::to_string(mesh_.n_cells()) +
                       " tetrahedra has more rows than 32 bits can number; split the mesh");
@@ -117,7 +119,7 @@ void PrimalAssembly::make_gradient_pattern() {
   }
 }
 
-void PrimalAssembly::assemble_gradient() {
+void PrimalTetAssembly::assemble_gradient() {
   double* const values = result_.gradient.valuePtr();
   const Index* const inner = result_.gradient.innerIndexPtr();
   parallel_blocks(mesh_.n_cells(), options_.threads, [&](int, Index begin, Index end) {
@@ -134,7 +136,7 @@ void PrimalAssembly::assemble_gradient() {
   });
 }
 
-void PrimalAssembly::collect_frames() {
+void PrimalTetAssembly::collect_frames() {
   // A part names up to three vertices: every tetrahedron is two halves with two vertices each.
   result_.frames.parts.clear();
   for (Index c = 0; c < mesh_.n_cells(); ++c) {
@@ -146,7 +148,7 @@ void PrimalAssembly::collect_frames() {
   }
 }
 
-void PrimalAssembly::report() {
+void PrimalTetAssembly::report() {
   result_.diagnostics = {};
   report_unreferenced(mesh_, result_.diagnostics);
   std::vector<Index> excluded;
@@ -162,7 +164,7 @@ void PrimalAssembly::report() {
       result_.diagnostics);
 }
 
-void PrimalAssembly::update(const Points& points) {
+void PrimalTetAssembly::update(const Points& points) {
   centre_points(points, points_, origin_);
   compute_terms();
   assemble_cell_blocks(result_.stiffness, false, incidence_, options_.threads,
@@ -170,8 +172,8 @@ void PrimalAssembly::update(const Points& points) {
                          return couplings_[16 * std::size_t(c) + std::size_t(4 * a + b)];
                        });
   assemble_cell_blocks(
-      result_.mass, true, incidence_, options_.threads,
-      [&](Index c, Index a, Index b) { return a == b ? result_.sample_measure[c] / 4 : 0.0; });
+      result_.mass, lumped_, incidence_, options_.threads,
+      [&](Index c, Index a, Index b) { return result_.sample_measure[c] / (a == b ? 10 : 20); });
   if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
   if (options_.parts == DiscretizationParts::Frames) collect_frames();
   report();
@@ -179,18 +181,19 @@ void PrimalAssembly::update(const Points& points) {
 
 }  // namespace
 
-const VolumeOperator primal_volume_operator = {
-    "primal",
+extern const VolumeOperator primal_tet_volume_operator = {
+    "primal_tet",
     "Cotan Laplacian of tetrahedra: linear elements",
     "Crane: The n-dimensional cotangent formula, 2019",
-    {.symmetric = true,
-     .semidefinite = true,
-     .kernel_is_constants = true,
-     .linear_precision = true,
-     .equals_cotan_on_simplices = true,
-     .simplices_only = true,
-     .face_local = true},
-    [](const PolyhedralMesh& mesh, const DiscretizationOptions& options)
-        -> std::unique_ptr<Assembly> { return std::make_unique<PrimalAssembly>(mesh, options); }};
+    {.equals_cotan_on_simplices = true, .simplices_only = true, .face_local = true},
+    {.masses = {MassKind::Lumped, MassKind::Full}},
+    {"S_ij = -1/6 of the sum of l_kl cot(theta_kl) over the tetrahedra of the edge ij, kl the "
+     "opposite edge. Mass: quarters of the tetrahedra; full: linear elements.",
+     "vertices", "the vertex and its neighbours: about 15 entries a row",
+     "The reference on tetrahedra.", "Crane: The n-dimensional cotangent formula, 2019"},
+    [](const PolyhedralMesh& mesh,
+       const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
+      return std::make_unique<PrimalTetAssembly>(mesh, options);
+    }};
 
 }  // namespace carat
