@@ -1,6 +1,7 @@
 #pragma once
 // Boundary conditions of a problem on a surface or in a volume, and their integrals.
 
+#include <functional>
 #include <vector>
 
 #include "carat/mesh/polyhedral_mesh.h"
@@ -15,6 +16,9 @@ struct BoundaryConditions {
   /// u = value at these vertices (anywhere, not only on the boundary).
   std::vector<Index> dirichlet_vertices{};
   std::vector<double> dirichlet_values{};
+  /// Value at unknowns on boundary faces and edges all of whose vertices are Dirichlet vertices;
+  /// empty: the mean of these.
+  std::function<double(const Vec3&)> dirichlet_function{};
   /// K du/dn = flux over these sides, n the outward normal (on surfaces: conormal): positive flux
   /// flows in.
   std::vector<Index> neumann_sides{};
