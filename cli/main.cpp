@@ -116,7 +116,7 @@ int run_command(const Command& command, std::vector<std::string> arguments) {
     Session session(command.name, common);
     run(session);
     session.finish();
-    return kSuccess;
+    return session.exit_code();
   } catch (const std::exception& error) {
     return report_failure(describe_failure(error), json);
   }

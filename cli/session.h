@@ -45,6 +45,10 @@ class Session {
     return std::forward<Work>(work)();
   }
 
+  /// What the program returns when nothing is thrown; 0 unless set.
+  void set_exit_code(int code) { exit_code_ = code; }
+  int exit_code() const { return exit_code_; }
+
   /// The object as it would be printed now.
   Json snapshot() const;
   /// Prints the JSON object, or the line of times.
@@ -65,6 +69,7 @@ class Session {
   double& seconds_of(const std::string& phase);
 
   CommonOptions options_;
+  int exit_code_ = 0;
   Json report_;
   std::vector<std::pair<std::string, double>> seconds_;
   Json notes_ = Json::array();

@@ -7,7 +7,7 @@ set -euo pipefail
 build=(libeigen3-dev libsuitesparse-dev libopenblas-dev libmetis-dev libvtk9-dev libmuparser-dev
        libcli11-dev nlohmann-json3-dev zlib1g-dev glmark2-data ca-certificates cmake:cmake
        ninja:ninja-build g++:g++ node:nodejs npm:npm python3:python3)
-test=(libgtest-dev fonts-dejavu-core chromium:chromium clang-format-14:clang-format-14)
+test=(libgtest-dev libbenchmark-dev fonts-dejavu-core chromium:chromium clang-format-14:clang-format-14)
 
 wanted=()
 for group in "$@"; do

@@ -76,6 +76,16 @@ std::vector<ClaimCase> convergence_cases(const char* domain) {
   return cases;
 }
 
+/// Those for which convergence_bounds.h records orders: curvature and geodesics converge as they
+/// may, not at an order that somebody promises.
+std::vector<ClaimCase> bounded_cases() {
+  std::vector<ClaimCase> cases;
+  for (const ClaimCase& c : convergence_cases("unit sphere"))
+    for (const char* name : {"diamond", "bunge", "cotan"})
+      if (c.entry->name == std::string(name)) cases.push_back(c);
+  return cases;
+}
+
 Vector values_at(const PolygonMesh& mesh, double (*function)(const Vec3&)) {
   Vector values(mesh.n_vertices());
   for (Index v = 0; v < mesh.n_vertices(); ++v) values[v] = function(mesh.point(v));
@@ -137,8 +147,7 @@ TEST_P(CurvatureFull, unit_sphere) {
   expect_recorded_bound("curvature");
 }
 
-INSTANTIATE_TEST_SUITE_P(Claims, CurvatureFull, testing::ValuesIn(convergence_cases("unit sphere")),
-                         case_name);
+INSTANTIATE_TEST_SUITE_P(Claims, CurvatureFull, testing::ValuesIn(bounded_cases()), case_name);
 
 class GeodesicsFull : public Convergence {
  protected:
@@ -170,8 +179,7 @@ TEST_P(GeodesicsFull, unit_sphere_with_a_long_time_step) {
   EXPECT_TRUE(std::is_sorted(error.rbegin(), error.rend()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Claims, GeodesicsFull, testing::ValuesIn(convergence_cases("unit sphere")),
-                         case_name);
+INSTANTIATE_TEST_SUITE_P(Claims, GeodesicsFull, testing::ValuesIn(bounded_cases()), case_name);
 
 TEST(Franke, laplacian_agrees_with_finite_differences) {
   // Central differences of step s are exact to s^2 f''''/12 ~ 1e-4 * 1e4 / 12 relative to f'' ~

@@ -13,6 +13,16 @@
 
 namespace carat::test {
 
+/// Where virtual vertices may lie, for operators that have them.
+inline std::vector<VirtualPoint> virtual_points_of(const OperatorOptionSet& options) {
+  if (!options.virtual_vertex) return {VirtualVertexRule{}.point};
+  return {VirtualPoint::AreaMinimizer, VirtualPoint::Centroid, VirtualPoint::TraceMinimizer};
+}
+
+inline bool has_mass(const OperatorOptionSet& options, MassKind mass) {
+  return std::find(options.masses.begin(), options.masses.end(), mass) != options.masses.end();
+}
+
 struct ClaimCase {
   const SurfaceOperator* entry;
   std::string family;
@@ -28,6 +38,9 @@ struct ClaimCase {
   }
   PolygonMesh mesh() const { return generate_mesh(family, options); }
   bool planar() const { return family.rfind("plane-", 0) == 0; }
+  bool full_and_lumped() const {
+    return has_mass(entry->options, MassKind::Full) && has_mass(entry->options, MassKind::Lumped);
+  }
   bool triangles() const { return family.find("triangles") != std::string::npos; }
 };
 

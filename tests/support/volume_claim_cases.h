@@ -27,6 +27,12 @@ struct VolumeClaimCase {
     return text;
   }
   PolyhedralMesh mesh() const { return generate_volume(family, options); }
+  bool full_and_lumped() const {
+    return std::count(entry->options.masses.begin(), entry->options.masses.end(), MassKind::Full) >
+               0 &&
+           std::count(entry->options.masses.begin(), entry->options.masses.end(),
+                      MassKind::Lumped) > 0;
+  }
   bool cube() const { return family.rfind("cube-", 0) == 0; }
 };
 
@@ -38,9 +44,12 @@ inline bool tetrahedral(const std::string& family) {
   return family.find("-tets") != std::string::npos;
 }
 
-/// An operator runs on a family unless the literature defines it on tetrahedra only.
+/// An operator runs on a family unless the literature defines it on tetrahedra only. Those with
+/// unknowns beyond the vertices or without semidefiniteness have tests of their own:
+/// unit/test_ddfv.cpp, unit/test_dual_tet.cpp.
 inline bool defined_on(const VolumeOperator& entry, const std::string& family) {
-  return !entry.claims.simplices_only || tetrahedral(family);
+  return entry.claims.vertex_unknowns && entry.claims.semidefinite &&
+         (!entry.claims.simplices_only || tetrahedral(family));
 }
 
 inline constexpr double kVolumeJitter = 0.2;
