@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <sstream>
 #include <system_error>
 
 #include "carat/base/error.h"
@@ -26,15 +27,29 @@ struct Options {
   OperatorOptions discretization;
 };
 
-std::string sign_convention(const KindWords& kind) {
+std::string sign_convention(const KindWords& kind, const Discretization& d,
+                            const OperatorClaims& claims) {
   const std::string measure = kind.measure;
-  return "stiffness S is symmetric positive semidefinite and integrated; laplacian L = -S = D G is "
-         "negative semidefinite, pointwise M^-1 L; divergence D = -G^T M_s, M_s holding each "
-         "sample's " +
-         measure + " once a component; mass M sums to the " + measure;
+  std::string text =
+      claims.semidefinite
+          ? "stiffness S is symmetric positive semidefinite and integrated; laplacian L = -S is "
+            "negative semidefinite, pointwise M^-1 L"
+          : "stiffness S is symmetric and integrated, positive semidefinite on Delaunay meshes; "
+            "laplacian L = -S, pointwise M^-1 L";
+  if (d.is_one_form())
+    text += "; divergence D = -G^T M_s, M_s the inner product of one-forms";
+  else if (d.gradient_dimension > 0)
+    text += "; divergence D = -G^T M_s, M_s holding each sample's " + measure + " once a component";
+  if (d.gradient_dimension > 0)
+    text += claims.divergence_of_gradient ? "; L = D G"
+                                          : "; L is D G plus the operator's stabilising term";
+  return text + "; mass M sums to the " + measure;
 }
 
 std::string frame_convention(Index dimension, const std::string& order) {
+  if (dimension == 1)
+    return "row c of the gradient is the difference along side c, counted from 0 through the faces "
+           "in their order: value at the side's end minus value at its start";
   const std::string rows = "row " + std::to_string(dimension) +
                            " s + k of the gradient is component k of sample s, counted from 0";
   if (dimension != 2) return rows + "; components are along x, y, z" + order;
@@ -101,6 +116,22 @@ void write_text(const fs::path& path, const std::string& content) {
   if (!out) throw IoError(path.string() + ": cannot be written; is the disk full?");
 }
 
+/// What the rows beyond the vertices are, one a line.
+std::string describe_unknowns(const Discretization& d) {
+  constexpr const char* kSites[] = {"face", "cell", "edge"};
+  std::ostringstream out;
+  out.precision(17);
+  out << "row,site,element,x,y,z\n";
+  Index k = 0;
+  for (const ExtraUnknowns::Block& block : d.extra.blocks)
+    for (const Index element : block.elements) {
+      const auto x = d.extra.positions.row(k);
+      out << d.n_vertices() + k++ << ',' << kSites[static_cast<std::size_t>(block.site)] << ','
+          << element << ',' << x[0] << ',' << x[1] << ',' << x[2] << '\n';
+    }
+  return out.str();
+}
+
 /// Writes the matrices and names their files.
 std::vector<std::string> write_matrices(const fs::path& folder, const Discretization& d,
                                         const std::string& measure) {
@@ -116,7 +147,14 @@ std::vector<std::string> write_matrices(const fs::path& folder, const Discretiza
   if (d.gradient_dimension > 0) {
     write("gradient", d.gradient, MatrixSymmetry::General, d.name + " gradient G");
     write("divergence", d.divergence(), MatrixSymmetry::General,
-          d.name + " divergence D = -G^T M_s, integrated; L = D G");
+          d.name + " divergence D = -G^T M_s, integrated");
+  }
+  if (d.is_one_form())
+    write("inner_product", d.one_forms.inner_product, MatrixSymmetry::Symmetric,
+          d.name + " inner product M_s of one-forms");
+  if (d.extra.size() > 0) {
+    files.emplace_back("unknowns.csv");
+    write_text(folder / files.back(), describe_unknowns(d));
   }
   return files;
 }
@@ -131,19 +169,27 @@ std::string sample_order(const PolyhedralMesh& mesh, const Discretization& d) {
   return "";
 }
 
+const SurfaceOperator& entry_of(const PolygonMesh&, const std::string& name) {
+  return surface_operator(name);
+}
+const VolumeOperator& entry_of(const PolyhedralMesh&, const std::string& name) {
+  return volume_operator(name);
+}
+
 template <class Mesh>
 void write_operators(Session& session, const Options& options, const Mesh& mesh) {
   const TemporaryFolder folder(options.output);
   const Discretization discretization =
       discretize(session, mesh, options.discretization, DiscretizationParts::Gradient);
   const bool has_gradient = discretization.gradient_dimension > 0;
+  const OperatorClaims& claims = entry_of(mesh, discretization.name).claims;
   std::vector<std::string> files = session.phase(
       "write", [&] { return write_matrices(folder.path(), discretization, words(mesh).measure); });
   if (!has_gradient) session.note("this operator has no gradient: stiffness and mass only");
 
   files.push_back("operators.json");
   Json& report = session.report();
-  report["sign_convention"] = sign_convention(words(mesh));
+  report["sign_convention"] = sign_convention(words(mesh), discretization, claims);
   if (has_gradient)
     report["frame_convention"] =
         frame_convention(discretization.gradient_dimension, sample_order(mesh, discretization));
@@ -151,8 +197,10 @@ void write_operators(Session& session, const Options& options, const Mesh& mesh)
   report["files"] = files;
   write_text(folder.path() / files.back(), session.snapshot().dump(2) + "\n");
   folder.publish(files);
-  session.say("written: " + options.output + "/ with stiffness S (positive semidefinite), mass M" +
-              (has_gradient ? ", gradient G, divergence D: -S = D G" : ""));
+  session.say("written: " + options.output + "/ with stiffness S" +
+              (claims.semidefinite ? " (positive semidefinite)" : "") + ", mass M" +
+              (has_gradient ? ", gradient G, divergence D" : "") +
+              (has_gradient && claims.divergence_of_gradient ? ": -S = D G" : ""));
 }
 
 void run(Session& session, const Options& options) {
@@ -175,7 +223,8 @@ const Command operators_command = {
     "operators",
     "Write stiffness, mass, gradient and divergence as Matrix Market files",
     "Files: stiffness.mtx mass.mtx gradient.mtx divergence.mtx, and operators.json with sizes,\n"
-    "conventions and diagnostics. S is positive semidefinite, the laplacian is L = -S = D G.\n"
+    "conventions and diagnostics. S is positive semidefinite, the laplacian is L = -S.\n"
+    "Operators with unknowns beyond the vertices add unknowns.csv; one-forms, inner_product.mtx.\n"
     "Of symmetric matrices the lower triangle is written, as the format has it.",
     "  carat operators bunny.obj -o operators\n"
     "  carat operators ball.vtu --operator bunge --lumped -o operators\n"

@@ -94,15 +94,21 @@ inline double factorisation_defect(const SparseMatrix& stiffness, const SparseMa
   return difference(dg, SparseMatrix(-stiffness));
 }
 
-/// max |D + G^T M_s| / max |D|, M_s assembled here; for one-forms their inner product.
+/// max |D + G^T M_s| / max |D|, M_s assembled here.
+inline double adjointness_defect(const SparseMatrix& divergence, const SparseMatrix& gradient,
+                                 const Vector& sample_measure, Index dimension) {
+  Vector measure(gradient.rows());
+  for (Index row = 0; row < measure.size(); ++row) measure[row] = sample_measure[row / dimension];
+  const SparseMatrix expected = -SparseMatrix(gradient.transpose()) * measure.asDiagonal();
+  return difference(divergence, expected);
+}
+
+/// The same; for one-forms by their inner product.
 inline double adjointness_defect(const Discretization& d, const SparseMatrix& divergence) {
-  const SparseMatrix transposed = -SparseMatrix(d.gradient.transpose());
-  if (d.is_one_form())
-    return difference(divergence, SparseMatrix(transposed * d.one_forms.inner_product));
-  Vector measure(d.gradient.rows());
-  for (Index row = 0; row < measure.size(); ++row)
-    measure[row] = d.sample_measure[row / d.gradient_dimension];
-  return difference(divergence, SparseMatrix(transposed * measure.asDiagonal()));
+  if (!d.is_one_form())
+    return adjointness_defect(divergence, d.gradient, d.sample_measure, d.gradient_dimension);
+  return difference(
+      divergence, SparseMatrix(-SparseMatrix(d.gradient.transpose()) * d.one_forms.inner_product));
 }
 
 /// Largest deviation of the tangential gradient of u = c . x from c's projection on the frame of

@@ -331,13 +331,15 @@ extern const SurfaceOperator diamond_surface_operator = {
     {},
     {.virtual_vertex = true},
     {"S = G^T M_d G with one gradient per edge: linear on the diamond of the edge's two ends and "
-     "the"
+     "the "
      "virtual vertices of its two faces, the two halves unfolded into one plane; virtual vertices "
-     "are"
-     "affine combinations of their faces' vertices. Mass P^T M P, a quarter of a diamond to each of"
+     "are "
+     "affine combinations of their faces' vertices. Mass P^T M P, a quarter of a diamond to each "
+     "of "
      "its four vertices before the prolongation P.",
      "vertices", "all vertices of the two faces of an edge: 13 entries a row on regular triangles",
-     "The default: the most accurate of these operators for Poisson's equation on most meshes. Rows"
+     "The default: the most accurate of these operators for Poisson's equation on most meshes. "
+     "Rows "
      "are longer than with bunge, so factorisations take longer.",
      "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021, "
      "equations (6) to (23)"},

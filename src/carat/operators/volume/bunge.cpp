@@ -312,7 +312,7 @@ extern const VolumeOperator bunge_volume_operator = {
     "Bunge, Herholz, Kazhdan, Botsch: Polygon Laplacian Made Simple, 2020",
     {.equals_cotan_on_simplices = true, .face_local = true},
     {.masses = {MassKind::Lumped, MassKind::Full}, .virtual_vertex = true},
-    {"S = P^T S_tet P: linear elements on the tetrahedra of every edge, its face's and its cell's"
+    {"S = P^T S_tet P: linear elements on the tetrahedra of every edge, its face's and its cell's "
      "virtual vertex. Mass P^T M_tet P, by default its row sums.",
      "vertices", "vertices of common cells",
      "Where sparsity counts more than accuracy: half of the diamond's entries and less.",

@@ -439,13 +439,13 @@ extern const VolumeOperator diamond_volume_operator = {
     "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021",
     {},
     {.virtual_vertex = true},
-    {"S = G^T M_d G with one gradient for every edge of every face: linear on the edge, the face's"
+    {"S = G^T M_d G with one gradient for every edge of every face: linear on the edge, the face's "
      "virtual vertex and those of the two cells, which are affine combinations of their vertices. "
-     "Mass"
+     "Mass "
      "P^T M P, a sixth of a diamond to each vertex of its base and a quarter to each tip.",
      "vertices", "all vertices of the two cells of a face",
      "The default: the lowest error with the full mass. Rows couple vertices of neighbouring "
-     "cells, so"
+     "cells, so "
      "direct solvers take longer than with bunge.",
      "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021, "
      "equations (24) to (33)"},
