@@ -72,6 +72,18 @@ TEST_P(SurfaceReference, bunge) {
             kAgreement);
 }
 
+TEST_P(SurfaceReference, alexa_wardetzky) {
+  const Discretization d = discretize(mesh(), "alexa_wardetzky");
+  EXPECT_LT(difference(d.stiffness, reference("alexa_wardetzky_stiffness")), kAgreement);
+  EXPECT_LT(difference(d.mass, reference("alexa_wardetzky_mass")), kAgreement);
+}
+
+TEST_P(SurfaceReference, de_goes) {
+  const Discretization d = discretize(mesh(), "de_goes");
+  EXPECT_LT(difference(d.stiffness, reference("de_goes_stiffness")), kAgreement);
+  EXPECT_LT(difference(d.mass, reference("de_goes_mass")), kAgreement);
+}
+
 INSTANTIATE_TEST_SUITE_P(Meshes, SurfaceReference,
                          testing::Values("tri_plane", "quad_plane", "poly_plane", "concave_plane",
                                          "tri_sphere", "quad_sphere", "hex_sphere", "saddle"),

@@ -1,7 +1,5 @@
 #include "carat/operators/discretization.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 
@@ -48,15 +46,23 @@ Points average_parts(const Discretization& d, const Vector& vectors, Index n_row
   return sum;
 }
 
-/// Root of the mean square over the sample's face.
-double one_form_length(const Discretization& d, Index sample, const Eigen::Ref<const Vector>& g) {
-  if (!(d.sample_measure[sample] > 0)) return 0;
-  const Eigen::Index first = d.first_row(sample);
-  double energy = 0;
-  for (Eigen::Index row = 0; row < g.size(); ++row)
-    for (SparseMatrix::InnerIterator entry(d.one_forms.inner_product, first + row); entry; ++entry)
-      energy += g[row] * entry.value() * g[entry.col() - first];
-  return std::sqrt(std::max(0.0, energy) / d.sample_measure[sample]);
+/// Scales groups of `size` values to unit length. \return flags of those without a length
+std::vector<bool> normalise(Vector& values, Index size) {
+  const Index n = static_cast<Index>(values.size()) / size;
+  std::vector<bool> vanished(static_cast<std::size_t>(n), false);
+  for (Index s = 0; s < n; ++s) {
+    auto g = values.segment(Eigen::Index{size} * s, size);
+    // Scaled before squaring, where the squares of small values would vanish.
+    const double scale = g.lpNorm<Eigen::Infinity>();
+    if (scale >= std::numeric_limits<double>::min()) {
+      g /= scale;
+      g.normalize();
+    } else {
+      g.setZero();
+      vanished[static_cast<std::size_t>(s)] = true;
+    }
+  }
+  return vanished;
 }
 
 }  // namespace
@@ -88,23 +94,10 @@ Vector Discretization::apply_divergence(const Vector& vectors) const {
 
 std::vector<bool> Discretization::normalise_samples(Vector& vectors) const {
   require_gradient(*this, vectors.size());
-  std::vector<bool> vanished(static_cast<std::size_t>(n_samples()), false);
-  for (Index s = 0; s < n_samples(); ++s) {
-    auto g = vectors.segment(first_row(s), first_row(s + 1) - first_row(s));
-    // Scaled before squaring, where the squares of small values would vanish.
-    const double scale = g.size() > 0 ? g.lpNorm<Eigen::Infinity>() : 0;
-    double length = 0;
-    if (scale >= std::numeric_limits<double>::min()) {
-      g /= scale;
-      length = is_one_form() ? one_form_length(*this, s, g) : g.norm();
-    }
-    if (length > 0) {
-      g /= length;
-    } else {
-      g.setZero();
-      vanished[static_cast<std::size_t>(s)] = true;
-    }
-  }
+  if (!is_one_form()) return normalise(vectors, gradient_dimension);
+  Vector sharpened = one_forms.sharp * vectors;
+  std::vector<bool> vanished = normalise(sharpened, 3);
+  vectors = one_forms.flat * sharpened;
   return vanished;
 }
 

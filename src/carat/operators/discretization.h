@@ -93,6 +93,7 @@ struct OneForms {
   Array<Index> first;          ///< sample -> its first row of the gradient; last: number of rows
   SparseMatrix inner_product;  ///< (rows, rows), one positive semidefinite block a sample
   SparseMatrix sharp;          ///< (3 * samples, rows): the vector of a sample  [1/length]
+  SparseMatrix flat;           ///< (rows, 3 * samples): the differences of a vector  [length]
 };
 
 /// The discrete operators of one mesh and method: an immutable value.
@@ -134,8 +135,9 @@ struct Discretization {
   SparseMatrix divergence() const;
   /// D X without forming D. \param vectors  one gradient-like value a row of the gradient
   Vector apply_divergence(const Vector& vectors) const;
-  /// Scales every sample to unit length, by its inner product for one-forms; those without a
-  /// length become zero. -> flags of the samples that did
+  /// Scales every sample to unit length; those without a length become zero. A one-form is replaced
+  /// by the differences of its unit vector: what no vector has would else count as length.
+  /// \return flags of the samples that became zero
   std::vector<bool> normalise_samples(Vector& vectors) const;
   /// Integrated row sums of the mass.
   Vector lumped_mass() const { return mass * Vector::Ones(mass.cols()); }
