@@ -1,6 +1,7 @@
-// Eigenpairs of the diamond Laplacian: block Lanczos against plain shift-invert Lanczos of Spectra
-// in the same run, both with the same factorisation, on surfaces and in volumes: processor seconds
-// and peak memory. Threads of BLAS would be counted too, so leave it one.
+// Eigenpairs of the diamond Laplacian on surfaces and in volumes: rounds of Spectra until no pair
+// is missing, against its plain shift-invert mode, which may miss some, in the same run and with
+// the same factorisation: processor seconds and peak memory. Threads of BLAS would be counted too,
+// so leave it one.
 //
 //   OMP_NUM_THREADS=1 carat_bench_eigen [PAIRS [SURFACE_VERTICES [VOLUME_VERTICES]]]
 //

@@ -77,9 +77,9 @@ TEST(EigenSolver, path_has_its_closed_form_values) {
   expect_sound(pairs, m);
 }
 
-TEST(EigenSolver, a_cluster_larger_than_any_block_is_complete) {
-  // Equal copies: every eigenvalue has 20 members, of which a Krylov space shows no more than its
-  // blocks have columns; the copies are long enough for it to find others first.
+TEST(EigenSolver, clusters_of_which_a_krylov_space_shows_one_member_are_complete) {
+  // Equal copies: every eigenvalue has 20 members, of which a Krylov space shows one; the copies
+  // are long enough for it to find others first.
   const Index copies = 20, n = 150;
   const SparseMatrix one = path(n);
   SparseMatrix s(copies * n, copies * n);
@@ -106,7 +106,7 @@ TEST(EigenSolver, a_cluster_larger_than_any_block_is_complete) {
 }
 
 TEST(EigenSolver, members_that_a_whole_krylov_space_misses_are_found) {
-  // Two distinct values: a block's Krylov space is exhausted at once, with few members of either.
+  // Two distinct values: a Krylov space is exhausted at once, with one member of each.
   Vector values = Vector::Constant(500, 2);
   for (Index k = 0; k < 20; ++k) values[25 * k] = 1;
   const SparseMatrix s = diagonal(values), m = diagonal(Vector::Ones(500));
@@ -117,6 +117,50 @@ TEST(EigenSolver, members_that_a_whole_krylov_space_misses_are_found) {
     for (Index k = 0; k < count; ++k) EXPECT_NEAR(pairs.values[k], k < 20 ? 1 : 2, 1e-13) << k;
     expect_sound(pairs, m);
   }
+}
+
+TEST(EigenSolver, graphs_of_few_distinct_values_are_solved) {
+  // The complete graph: all of its non-zero values are equal, so that every vector is an
+  // eigenvector and what an iteration sees beside it is rounding.
+  const Index n = 400;
+  SparseMatrix complete(n, n);
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j) complete.insert(i, j) = i == j ? n - 1 : -1;
+  complete.makeCompressed();
+  const SparseMatrix ones = diagonal(Vector::Ones(n));
+  for (const Index count : {2, 20}) {
+    SCOPED_TRACE(count);
+    const EigenPairs pairs = smallest_eigenpairs(complete, ones, count);
+    EXPECT_GT(pairs.solves, 0);
+    EXPECT_LT((pairs.values.tail(count - 1) / n - Vector::Ones(count - 1)).cwiseAbs().maxCoeff(),
+              1e-12);  // condition n
+    expect_sound(pairs, ones);
+  }
+  // The hypercube: 2 k, binomial(9, k) times.
+  SparseMatrix cube(512, 512);
+  for (Index i = 0; i < 512; ++i) {
+    cube.insert(i, i) = 9;
+    for (Index bit = 1; bit < 512; bit *= 2) cube.insert(i, i ^ bit) = -1;
+  }
+  cube.makeCompressed();
+  const SparseMatrix cube_mass = diagonal(Vector::Ones(512));
+  for (const Index count : {5, 10, 11, 46, 47}) {
+    SCOPED_TRACE(count);
+    const EigenPairs pairs = smallest_eigenpairs(cube, cube_mass, count);
+    EXPECT_GT(pairs.solves, 0);
+    for (Index k = 1; k < count; ++k)
+      EXPECT_NEAR(pairs.values[k], k < 10 ? 2 : k < 46 ? 4 : 6, 1e-11) << k;
+    expect_sound(pairs, cube_mass);
+  }
+}
+
+TEST(EigenSolver, as_many_pairs_as_a_value_has_members_are_found) {
+  // What is left has no other vectors of that value to converge to.
+  Vector values = Vector::Constant(600, 5);
+  for (Index k = 0; k < 70; ++k) values[8 * k] = 1;
+  const EigenPairs pairs = smallest_eigenpairs(diagonal(values), diagonal(Vector::Ones(600)), 70);
+  EXPECT_LT((pairs.values - Vector::Ones(70)).cwiseAbs().maxCoeff(), 1e-13);
+  expect_sound(pairs, diagonal(Vector::Ones(600)));
 }
 
 TEST(EigenSolver, symmetric_grids_give_complete_clusters_wherever_they_are_cut) {
@@ -207,6 +251,22 @@ TEST(EigenSolver, far_apart_eigenvalues_are_found) {
   EXPECT_LT(pairs.residuals.tail(4).maxCoeff(), 1e-6);
   // 1e-16 of |S| is this much of the first value.
   EXPECT_LT(pairs.residuals.maxCoeff(), 1e-16 * 4 / pairs.values[1] * 10);
+}
+
+TEST(EigenSolver, values_that_stand_out_spoil_no_others) {
+  // A random start vector's image is all but the first eigenvectors.
+  for (const Index n_tiny : {1, 3}) {
+    SCOPED_TRACE(n_tiny);
+    Vector values = Vector::LinSpaced(600, 1, 7);
+    values.head(n_tiny).setConstant(1e-12);
+    const SparseMatrix m = diagonal(Vector::Ones(600));
+    const EigenPairs pairs = smallest_eigenpairs(diagonal(values), m, 10);
+    for (Index k = 0; k < 10; ++k)
+      // The larger inverse values' rounding is 1e-4 of the others, squared in their values.
+      EXPECT_NEAR(pairs.values[k] / values[k], 1, 1e-7) << k;
+    const Matrix gram = pairs.vectors.transpose() * pairs.vectors;
+    EXPECT_LT((gram - Matrix::Identity(10, 10)).cwiseAbs().maxCoeff(), 1e-11);
+  }
 }
 
 TEST(EigenSolver, bad_matrices_are_refused) {

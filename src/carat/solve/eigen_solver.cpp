@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "carat/base/error.h"
-#include "carat/solve/lanczos/block_lanczos.h"
+#include "carat/solve/krylov/largest_pairs.h"
 
 namespace carat {
 namespace {
@@ -19,9 +19,9 @@ namespace {
 constexpr Index kDense = 300;
 // Beyond this it takes minutes.
 constexpr Index kMaxDense = 3000;
-// Block Lanczos needs room beside its subspace for random vectors.
+// The complement of the pairs found must have room for a small Krylov space.
 constexpr Index kSpareDimensions = 32;
-// The largest basis, 8 GB.
+// The largest basis, 8 GB; a restart copies most of it.
 constexpr double kMaxEntries = 1e9;
 // Residuals beyond this are worth as many solves as there are pairs.
 constexpr double kGoodResidual = 1e-9;
@@ -54,7 +54,8 @@ class Pencil final : public InverseOperator {
   Pencil(const SparseMatrix& stiffness, const SparseMatrix& mass, std::vector<Index> kept)
       : rows(std::move(kept)), s(restrict_to(stiffness, rows)), m(restrict_to(mass, rows)) {
     find_floating_components();
-    row_mass_ = m * Vector::Ones(m.cols());
+    ones_ = Vector::Ones(m.cols());
+    row_mass_ = m * ones_;
     measure_.assign(floating.size(), 0.0);
     for (Index i = 0; i < size(); ++i)
       if (floating_of_[i] >= 0) measure_[floating_of_[i]] += row_mass_[i];
@@ -70,23 +71,12 @@ class Pencil final : public InverseOperator {
   Index size() const override { return static_cast<Index>(rows.size()); }
   Index n_zero() const { return static_cast<Index>(floating.size()); }
 
-  Matrix mass_product(const Matrix& x) const override { return m * x; }
+  Matrix mass_product(const Eigen::Ref<const Matrix>& x) const override { return m * x; }
 
-  void project(Matrix& x) const override {
-    if (floating.empty()) return;
-    std::vector<double> mean(floating.size());
-    for (Eigen::Index k = 0; k < x.cols(); ++k) {
-      std::fill(mean.begin(), mean.end(), 0.0);
-      for (Index i = 0; i < size(); ++i)
-        if (floating_of_[i] >= 0) mean[floating_of_[i]] += row_mass_[i] * x(i, k);
-      for (std::size_t f = 0; f < mean.size(); ++f) mean[f] /= measure_[f];
-      for (Index i = 0; i < size(); ++i)
-        if (floating_of_[i] >= 0) x(i, k) -= mean[floating_of_[i]];
-    }
-  }
+  void project(Matrix& x) const override { take_out_constants(x, row_mass_, ones_); }
 
-  Matrix solve(const Matrix& b) const override {
-    // Held rows take what a right-hand side has outside of the range of S: nothing but rounding.
+  Matrix solve(Matrix b) const override {
+    take_out_constants(b, ones_, row_mass_);
     Matrix x = solver_->solve(b);
     project(x);
     return x;
@@ -135,9 +125,11 @@ class Pencil final : public InverseOperator {
 
  private:
   void find_floating_components();
+  /// x -= along_f (weights_f . x) / measure_f for each floating component f.
+  void take_out_constants(Matrix& x, const Vector& weights, const Vector& along) const;
 
   std::vector<Index> floating_of_;  // row -> floating component, or -1
-  Vector row_mass_;
+  Vector ones_, row_mass_;
   std::vector<double> measure_;
   std::unique_ptr<SpdSolver> solver_;
 };
@@ -164,6 +156,19 @@ void Pencil::find_floating_components() {
     }
   floating_of_.resize(rows.size());
   for (Index i = 0; i < size(); ++i) floating_of_[i] = number[component[i]];
+}
+
+void Pencil::take_out_constants(Matrix& x, const Vector& weights, const Vector& along) const {
+  if (floating.empty()) return;
+  std::vector<double> mean(floating.size());
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    std::fill(mean.begin(), mean.end(), 0.0);
+    for (Index i = 0; i < size(); ++i)
+      if (floating_of_[i] >= 0) mean[floating_of_[i]] += weights[i] * x(i, k);
+    for (std::size_t f = 0; f < mean.size(); ++f) mean[f] /= measure_[f];
+    for (Index i = 0; i < size(); ++i)
+      if (floating_of_[i] >= 0) x(i, k) -= mean[floating_of_[i]] * along[i];
+  }
 }
 
 void Pencil::check_mass() const {
@@ -244,12 +249,12 @@ Index refine(const Pencil& pencil, const Vector& values, Matrix& vectors) {
 /// The `count` pairs after the zero modes.
 /// \return number of right-hand sides solved for
 Index solve_nonzero(const Pencil& pencil, Index count, Vector& values, Matrix& vectors) {
-  const Index n = pencil.size(), subspace = BlockLanczos::subspace_size(count);
+  const Index n = pencil.size(), subspace = krylov_dimension(count);
   if (n <= kDense || subspace > n - pencil.n_zero() - kSpareDimensions) {
     if (n > kMaxDense)
       throw InvalidOption(std::to_string(count) + " eigenpairs of " + std::to_string(n) +
                           " unknowns; above " + std::to_string(kMaxDense) +
-                          " unknowns at most about half of the spectrum can be had");
+                          " unknowns at most about two thirds of the spectrum can be had");
     solve_dense(pencil, count, values, vectors);
     return 0;
   }
@@ -257,16 +262,11 @@ Index solve_nonzero(const Pencil& pencil, Index count, Vector& values, Matrix& v
     throw InvalidOption(std::to_string(count) + " eigenpairs of " + std::to_string(n) +
                         " unknowns take a basis of " + std::to_string(subspace) +
                         " vectors, more than 8 GB; ask for at most " +
-                        std::to_string(static_cast<Index>(kMaxEntries / n / 2)));
-  BlockLanczos lanczos(pencil, count);
-  lanczos.run();
-  values.resize(count);
-  vectors.resize(n, count);
-  for (Index i = 0; i < count; ++i) {
-    values[i] = 1 / lanczos.value(i);
-    vectors.col(i) = lanczos.vector(i);
-  }
-  return lanczos.solves() + refine(pencil, values, vectors);
+                        std::to_string(static_cast<Index>(kMaxEntries / n / 1.5)));
+  LargestPairs pairs = largest_pairs(pencil, count);
+  values = pairs.values.cwiseInverse();
+  vectors = std::move(pairs.vectors);
+  return pairs.solves + refine(pencil, values, vectors);
 }
 
 /// Turns x so that its first large entry is positive. The bound is no value that symmetric modes

@@ -29,9 +29,9 @@ struct EigenPairs {
 /// S symmetric positive semidefinite, M symmetric positive definite. Rows in which both have no
 /// entry take no part. The constants of floating components are known beforehand and taken out of
 /// the problem, so that S is inverted where it is definite and no shift has to be chosen. The rest
-/// is found by block Lanczos on S^-1 M with full orthogonalisation. No member of a cluster is
-/// missed: when all pairs are there, the iteration starts afresh from random vectors in their
-/// complement until nothing below the last pair is left. The result is the same in every run.
+/// is found by Spectra's restarted Lanczos iteration on S^-1 M, in rounds: when all pairs are
+/// there, it starts afresh from a random vector in their complement until nothing below the last
+/// pair is left, so that no member of a cluster is missed. The result is the same in every run.
 ///
 /// \param fixed  empty, or one flag a row: rows and columns to leave out (Dirichlet)
 /// \throws InvalidOption  count not positive or more than there are rows that take part; so large
@@ -39,8 +39,8 @@ struct EigenPairs {
 ///                        not agree
 /// \throws SolverFailure  S is not semidefinite, with a kernel beyond the constants, M is not
 ///                        definite, values that are not finite, no convergence
-/// Cost: one factorisation of S and about 4 solves a pair; memory O(nnz of the factor +
-/// n * count).
+/// Cost: one factorisation of S and about 3 or 4 solves a pair, more for few pairs or many equal
+/// ones; memory O(nnz of the factor + n * count).
 EigenPairs smallest_eigenpairs(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count,
                                const std::vector<bool>& fixed = {});
 
