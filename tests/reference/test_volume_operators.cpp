@@ -84,6 +84,9 @@ class TetReference : public VolumeReference {};
 
 TEST_P(TetReference, cotan) {
   expect_agreement(discretize(mesh(), "primal_tet").stiffness, "cotan_stiffness");
+  const Discretization dual = discretize(mesh(), "dual_tet");
+  expect_agreement(dual.stiffness, "dual_tet_stiffness");
+  expect_agreement(dual.mass, "dual_tet_mass");
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, TetReference, testing::Values("tet_cube"),
