@@ -20,6 +20,10 @@ class BoundaryExpressions {
   BoundaryExpressions(std::string option, const std::vector<std::string>& texts);
 
   bool empty() const { return entries_.empty(); }
+  /// The expression where it is the only one and names no patch, else nullptr.
+  const Expression* everywhere() const {
+    return entries_.size() == 1 && entries_[0].patch.empty() ? &entries_[0].value : nullptr;
+  }
   /// Entry of each of the sides, -1: none. Those with a patch come before the one without.
   /// \throws InvalidOption  a patch that the mesh does not have, or one without faces
   template <class Data>

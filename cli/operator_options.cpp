@@ -163,16 +163,17 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
 
 void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surfaces_only) {
   std::vector<std::string> choices = names(surface_operators());
-  std::string description = "The discrete operator; see carat list operators";
+  std::string description =
+      "The discrete operator; see carat list operators.\nSurfaces: " + join(choices);
   if (!surfaces_only) {
     const std::vector<std::string> of_volumes = names(volume_operators());
-    description += ".\nSurfaces: " + join(choices) + ";\nvolumes: " + join(of_volumes);
+    description += ";\nvolumes: " + join(of_volumes);
     for (const std::string& name : of_volumes)
       if (std::find(choices.begin(), choices.end(), name) == choices.end()) choices.push_back(name);
   }
   app.add_option("--operator", options.name, description)
       ->check(CLI::IsMember(choices))
-      ->default_str(choices.front())
+      ->option_text("NAME=" + choices.front())
       ->group("Operator");
   app.add_option("--virtual-point", options.virtual_point,
                  "Where a face's virtual vertex lies: least squared area of\n"

@@ -49,6 +49,13 @@ struct Given {
   }
 };
 
+/// Values at the vertices and at the unknowns beyond them.
+Vector at_unknowns(const Expression& expression, const Points& vertices, const Discretization& d) {
+  Vector values(d.n_unknowns());
+  values << expression.at(vertices), expression.at(d.extra.positions);
+  return values;
+}
+
 /// Takes the mean by mass off the reference in every component whose solution has mean zero.
 template <class Mesh>
 void remove_floating_means(const Mesh& mesh, const Discretization& discretization,
@@ -84,28 +91,33 @@ template <class Mesh>
 void compare(Session& session, const Mesh& mesh, const Discretization& discretization,
              const BoundaryConditions& conditions, const Expression& exact, const Vector& u,
              std::vector<Field>& fields) {
-  Vector reference = exact.at(mesh.points());
+  Vector reference = at_unknowns(exact, mesh.points(), discretization);
   remove_floating_means(mesh, discretization, conditions, reference);
+  // Errors are those at the vertices, also where there are more unknowns.
+  const Index n = mesh.n_vertices();
+  reference.conservativeResize(n);
+  const SparseMatrix vertex_mass = discretization.mass.topLeftCorner(n, n);
   // Vertices of no element take no part.
   if (const Finding* const unused = discretization.diagnostics.find("unreferenced_vertices"))
     for (const Index v : unused->elements) reference[v] = u[v];
-  const ErrorNorms errors = error_norms(discretization.mass, u, reference);
+  const ErrorNorms errors = error_norms(vertex_mass, u, reference);
   session.report()["errors"] = {{"rmse", errors.rmse}, {"l2", errors.l2}, {"max", errors.max}};
   session.say("error against --exact: rmse " + text(errors.rmse) + ", L2 " + text(errors.l2) +
               ", max " + text(errors.max));
   fields.push_back(scalar_field("error", u - reference));
 }
 
-void report_solution(Session& session, const PoissonSolution& solution, const FactorInfo& info) {
+void report_solution(Session& session, const PoissonSolution& solution, const Vector& u,
+                     const FactorInfo& info) {
   Json& report = session.report();
-  report["u"] = extremes(solution.values);
+  report["u"] = extremes(u);
   report["relative_residual"] = solution.relative_residual;
   report["floating_components"] = solution.floating_components;
   report["imbalance"] = solution.imbalance;
   report["errors"] = nullptr;
   report["solver"] = {
       {"method", info.method}, {"ordering", info.ordering}, {"factor_nnz", info.nonzeros}};
-  session.say("u: " + describe_extremes(solution.values) + ", relative residual " +
+  session.say("u: " + describe_extremes(u) + ", relative residual " +
               text(solution.relative_residual));
   if (solution.floating_components > 0)
     session.say(count(solution.floating_components, "component") +
@@ -129,8 +141,9 @@ void report_conditions(Session& session, const BoundaryConditions& conditions,
 template <class Data>
 void solve(Session& session, const Options& options, const Given& given, Data& data) {
   check_output_kind(options.output, words(data.mesh));
-  const BoundaryConditions conditions = boundary_conditions(data, given.boundary);
-  const Vector f = given.rhs.at(data.mesh.points());
+  BoundaryConditions conditions = boundary_conditions(data, given.boundary);
+  if (const Expression* const dirichlet = given.boundary.dirichlet.everywhere())
+    conditions.dirichlet_function = *dirichlet;
   const bool writes = !options.output.empty();
   Coefficient coefficient;
   if (given.coefficient) coefficient.function = *given.coefficient;
@@ -139,18 +152,24 @@ void solve(Session& session, const Options& options, const Given& given, Data& d
   const Discretization discretization =
       discretize(session, data.mesh, options.discretization,
                  writes ? DiscretizationParts::Frames : DiscretizationParts::Matrices, coefficient);
+  const Vector f = at_unknowns(given.rhs, data.mesh.points(), discretization);
   const Poisson poisson =
       session.phase("factor", [&] { return Poisson(data.mesh, discretization, conditions); });
   const PoissonSolution solution = session.phase("solve", [&] { return poisson.solve(f); });
 
   report_conditions(session, conditions, words(data.mesh).side);
-  report_solution(session, solution, poisson.info());
-  data.fields.vertex = {scalar_field("u", solution.values)};
+  const Vector u = solution.values.head(data.mesh.n_vertices());
+  report_solution(session, solution, u, poisson.info());
+  data.fields.vertex = {scalar_field("u", u)};
   element_fields(data).clear();
   if (given.exact)
-    compare(session, data.mesh, discretization, conditions, *given.exact, solution.values,
-            data.fields.vertex);
+    compare(session, data.mesh, discretization, conditions, *given.exact, u, data.fields.vertex);
   if (!writes) return;
+  if (discretization.gradient_dimension == 0) {
+    session.note("the operator " + discretization.name + " defines no gradient: u only");
+    write_output(session, options.output, "Poisson", std::move(data));
+    return;
+  }
   const Vector gradient = discretization.gradient * solution.values;
   data.fields.vertex.push_back(vector_field("gradient", discretization.vertex_vectors(gradient)));
   element_fields(data) = {
@@ -175,7 +194,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
                                 const char* description) {
     app.add_option(name, target, description)->type_name("[PATCH=]EXPR")->allow_extra_args(false);
   };
-  add("--rhs", options->rhs, "f, at the vertices")->required();
+  add("--rhs", options->rhs, "f, at the unknowns")->required();
   add_boundary("--dirichlet", options->dirichlet,
                "u at the boundary vertices. With PATCH= only on this\n"
                "boundary patch of a volume; repeat it for several, an\n"

@@ -27,7 +27,7 @@ DENIALS = {
     "linear_precision": "no linear precision",
     "gradient": "defines no gradient",
     "divergence_of_gradient": "L is not D G alone: a stabilising term is added",
-    "total_mass": "its mass sums to the faces' vector areas, on faces that are not planar less than the area of the virtual triangles",
+    "total_mass": "where faces are not planar its mass sums to the measure of its own faces and points, not to that of the virtual vertices",
     "positive_mass": "its mass can have negative entries",
     "second_order": "no second order",
     "symmetric": "not symmetric",

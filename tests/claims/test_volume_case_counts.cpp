@@ -25,12 +25,13 @@ TEST(VolumeCaseCounts, families_and_operators_are_the_known_ones) {
   std::set<std::string> not_tets;
   for (const std::string& family : known)
     if (family.find("tets") == std::string::npos) not_tets.insert("primal_tet " + family);
-  for (const std::string& family : known) not_tets.insert("dual_tet " + family);
+  for (const char* name : {"dual_tet", "ceve", "cevefe"})
+    for (const std::string& family : known) not_tets.insert(std::string(name) + " " + family);
   EXPECT_EQ(excluded, not_tets);
 }
 
 TEST(VolumeCaseCounts, every_claim_runs_on_every_case) {
-  ASSERT_EQ(volume_operators().size(), 4u);
+  ASSERT_EQ(volume_operators().size(), 6u);
   const int operators = 3;  // diamond, bunge, primal_tet
   const int families = 16, tet_families = 4, hex_families = 4, cube_families = 8;
   const int pairs = 2 * families + tet_families;  // diamond, bunge; primal_tet

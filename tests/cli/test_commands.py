@@ -40,7 +40,9 @@ class Help(CaratTest):
         for command in APPS + ["operators"]:
             choices = names["surface"] if command == "curvature" else both
             text = self.succeed(command, "--help")
-            self.assertIn("{" + ",".join(choices) + "}=" + choices[0], text)
+            self.assertIn("NAME=" + choices[0], text)
+            for name in choices:
+                self.assertRegex(text, rf"(Surfaces|volumes): .*\b{name}\b")
 
 
 class List(CaratTest):
@@ -49,7 +51,8 @@ class List(CaratTest):
                  for what in ["operators", "families", "formats", "apps"]}
         names = {what: [entry["name"] for entry in entries] for what, entries in lists.items()}
         self.assertEqual(names["operators"],
-                         ["diamond", "bunge", "cotan", "diamond", "bunge", "primal_tet"])
+                         ["diamond", "bunge", "cotan", "alexa_wardetzky", "de_goes", "vem",
+                          "diamond", "bunge", "primal_tet", "dual_tet", "ceve", "cevefe"])
         for family in ["sphere-hexagons", "ball-voronoi"]:
             self.assertIn(family, names["families"])
         self.assertIn("vtp", names["formats"])

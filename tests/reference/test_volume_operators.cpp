@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+
 #include "carat/operators/registry.h"
 #include "carat/prolongation/virtual_cells.h"
 #include "support/volume_reference.h"
@@ -90,6 +93,64 @@ TEST_P(TetReference, cotan) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, TetReference, testing::Values("tet_cube"),
+                         [](const auto& test) { return std::string(test.param); });
+
+class DdfvReference : public VolumeReference {
+ protected:
+  /// The files number edges as the mesh file does, the library by their vertices.
+  std::vector<Index> file_rows(Index n_rows) const {
+    const PolyhedralMesh m = mesh();
+    std::vector<Index> rows;
+    for (Index row = 0; row < n_rows - m.n_edges(); ++row) rows.push_back(row);
+    const Index first = static_cast<Index>(rows.size());
+    const auto& sorted = m.face_mesh().edges().vertices;
+    std::ifstream file(path("mesh.ovm"));
+    std::string word;
+    while (file >> word && word != "Edges") {
+    }
+    Index n = 0;
+    file >> n;
+    for (std::array<Index, 2> e; n > 0 && file >> e[0] >> e[1]; --n) {
+      if (e[0] > e[1]) std::swap(e[0], e[1]);
+      rows.push_back(first + static_cast<Index>(std::lower_bound(sorted.begin(), sorted.end(), e) -
+                                                sorted.begin()));
+    }
+    return rows;
+  }
+  /// \param has_edges  the last unknowns are those of the edges
+  void expect_tight(const SparseMatrix& matrix, const std::string& name,
+                    bool has_edges = false) const {
+    const Matrix expected = test::read_dense_mtx(path(name + ".mtx"));
+    ASSERT_EQ(matrix.rows(), expected.rows());
+    Matrix found(matrix);
+    if (has_edges) {
+      const std::vector<Index> rows = file_rows(static_cast<Index>(matrix.rows()));
+      ASSERT_EQ(static_cast<Eigen::Index>(rows.size()), matrix.rows());
+      found = Matrix(found(rows, rows));
+    }
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.cwiseAbs().maxCoeff())
+        << name;
+  }
+};
+
+TEST_P(DdfvReference, ceve) {
+  const Discretization d = discretize(mesh(), "ceve");
+  expect_tight(d.stiffness, "ceve_stiffness");
+  expect_tight(d.mass, "ceve_weights");
+  const Discretization kept = discretize(mesh(), "ceve", {.boundary_unknowns = true});
+  expect_tight(kept.stiffness, "ceve_bface_stiffness");
+  expect_tight(kept.mass, "ceve_bface_weights");
+}
+
+TEST_P(DdfvReference, cevefe) {
+  const Discretization d = discretize(mesh(), "cevefe");
+  // That of the tetrahedra is left out for its size.
+  if (GetParam() != std::string("tet_cube")) expect_tight(d.stiffness, "cevefe_stiffness", true);
+  expect_tight(d.mass, "cevefe_weights", true);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, DdfvReference,
+                         testing::Values("hex_cube", "poly_cube", "prism_cube", "tet_cube"),
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace

@@ -44,6 +44,15 @@ inline bool tetrahedral(const std::string& family) {
   return family.find("-tets") != std::string::npos;
 }
 
+/// Those that all claims are about: the others have unknowns beyond the vertices or negative
+/// eigenvalues, and tests of their own in unit/test_ddfv.cpp and unit/test_dual_tet.cpp.
+inline std::vector<const VolumeOperator*> claimed_volume_operators() {
+  std::vector<const VolumeOperator*> operators;
+  for (const VolumeOperator* entry : volume_operators())
+    if (entry->claims.vertex_unknowns && entry->claims.semidefinite) operators.push_back(entry);
+  return operators;
+}
+
 /// An operator runs on a family unless the literature defines it on tetrahedra only. Those with
 /// unknowns beyond the vertices or without semidefiniteness have tests of their own:
 /// unit/test_ddfv.cpp, unit/test_dual_tet.cpp.

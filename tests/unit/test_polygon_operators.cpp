@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 
 #include "carat/apps/heat_geodesics.h"
@@ -10,6 +11,7 @@
 #include "carat/generators/families.h"
 #include "carat/operators/registry.h"
 #include "support/measures.h"
+#include "support/meshes.h"
 
 namespace carat::test {
 namespace {
@@ -54,6 +56,127 @@ TEST(PolygonOperators, defaults_of_lambda_are_those_of_the_papers) {
     EXPECT_GT(difference(discretize(mesh, name, {.lambda = 3}).stiffness,
                          discretize(mesh, name).stiffness),
               1e-2);
+}
+
+/// Rotations without an axis in common with the coordinates.
+Eigen::Matrix3d rotation(int k) {
+  return Eigen::AngleAxisd(0.7 + k, Vec3(1, 2 - 0.3 * k, -0.5).normalized()).toRotationMatrix();
+}
+
+/// Stiffness of a single face from its definition, with dense matrices and singular values.
+Matrix dense_stiffness(const std::string& name, const PolygonMesh& mesh, double lambda) {
+  const Index n = mesh.n_vertices();
+  const Matrix x = mesh.points().rowwise() - mesh.points().colwise().mean();
+  Matrix d = -Matrix::Identity(n, n), half = Matrix::Identity(n, n) / 2;
+  Vec3 area = Vec3::Zero();
+  for (Index i = 0; i < n; ++i) {
+    const Index j = (i + 1) % n;
+    d(i, j) += 1;
+    half(i, j) += 0.5;
+    area += Vec3(x.row(i)).cross(Vec3(x.row(j))) / 2;
+  }
+  const double size = area.norm();
+  const Vec3 normal = area / size;
+  const Matrix in_plane = Matrix::Identity(3, 3) - normal * normal.transpose();
+  const Matrix midpoints = half * x, sides = d * x * in_plane;
+  if (name == "alexa_wardetzky") {
+    const Eigen::JacobiSVD<Matrix> svd(sides, Eigen::ComputeFullU);
+    const Matrix c = svd.matrixU().rightCols(n - 2);
+    return d.transpose() * (midpoints * midpoints.transpose() / size + lambda * c * c.transpose()) *
+           d;
+  }
+  Matrix turn(3, 3);
+  turn << 0, -normal.z(), normal.y(), normal.z(), 0, -normal.x(), -normal.y(), normal.x(), 0;
+  const Matrix sharp = turn * midpoints.transpose() / size;
+  if (name == "de_goes") {
+    const Matrix rest = Matrix::Identity(n, n) - sides * sharp;
+    return d.transpose() * (size * sharp.transpose() * sharp + lambda * rest.transpose() * rest) *
+           d;
+  }
+  const Matrix gradient = sharp * d;
+  const Matrix consistent = size * gradient.transpose() * gradient;
+  const Matrix rest =
+      Matrix::Identity(n, n) - Matrix::Constant(n, n, 1.0 / n) - x * in_plane * gradient;
+  const Vector weights = consistent.diagonal().cwiseMax(1.0);
+  return consistent + rest.transpose() * weights.asDiagonal() * rest;
+}
+
+TEST(PolygonOperators, stiffness_of_a_face_is_that_of_its_definition) {
+  std::vector<NamedMesh> faces{{"heptagon", regular_polygon(7)},
+                               {"spiral", spiral_face()},
+                               {"thin_arms", l_shaped_face(40)}};
+  const PolygonMesh spiral = spiral_face();
+  Points lifted = spiral.points();
+  for (Index v = 0; v < spiral.n_vertices(); ++v) lifted(v, 2) = 0.6 * std::sin(2.0 * v);
+  faces.push_back({"not_planar", spiral.with_points(lifted)});
+  for (const NamedMesh& face : faces)
+    for (const double size : {1e-9, 1.0, 1e9}) {
+      const Points points = size * face.mesh.points() * rotation(0).transpose();
+      const PolygonMesh mesh = face.mesh.with_points(points);
+      for (const char* name : kNames) {
+        DiscretizationOptions options;
+        if (name != std::string("vem")) options.lambda = 0.3;
+        const Matrix s = Matrix(discretize(mesh, name, options).stiffness);
+        const Matrix expected = dense_stiffness(name, mesh, 0.3);
+        // Products of n by n matrices with entries of up to 1 / (area / diameter^2) = 20.
+        EXPECT_LT((s - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.cwiseAbs().maxCoeff())
+            << name << " " << face.name << " " << size;
+      }
+    }
+}
+
+TEST(PolygonOperators, lambda_scales_the_stabilising_term) {
+  const PolygonMesh mesh = generate_mesh("sphere-hexagons", {.level = 0, .jitter = 0.2});
+  for (const char* name : {"alexa_wardetzky", "de_goes"}) {
+    const auto stiffness = [&](double lambda) {
+      return discretize(mesh, name, {.lambda = lambda}).stiffness;
+    };
+    const SparseMatrix one = SparseMatrix(stiffness(2) - stiffness(1));
+    const SparseMatrix four = SparseMatrix(stiffness(6) - stiffness(2));
+    EXPECT_GT(max_abs(one), 0.1);
+    EXPECT_LT(difference(four, SparseMatrix(4 * one)), 1e-13);
+    EXPECT_GT(relative_eigenvalues(one)[0], -1e-14);
+  }
+}
+
+TEST(PolygonOperators, linear_functions_are_exact_on_faces_that_are_not_star_shaped) {
+  const PolygonMesh flat = spiral_face();
+  const PolygonMesh mesh = flat.with_points(flat.points() * rotation(0).transpose());
+  const Vec3 c = rotation(0) * Vec3(0.6, -1.3, 0);
+  const Vector u = mesh.points() * c;
+  for (const char* name : kNames) {
+    const Discretization d = discretize(mesh, name, {.parts = DiscretizationParts::Frames});
+    const Points vectors = d.element_vectors(d.gradient * u, 1);
+    EXPECT_LT((vectors.row(0).transpose() - c).norm(), 1e-14) << name;
+    // Energy of a linear function: area times its squared gradient.
+    const double energy = d.sample_measure[0] * c.squaredNorm();
+    EXPECT_NEAR(u.dot(d.stiffness * u), energy, 1e-13 * energy) << name;
+  }
+}
+
+TEST(PolygonOperators, thin_faces_stay_semidefinite_in_any_direction) {
+  for (const double aspect : {1e-4, 1e-8, 1e-10, 1e-12})
+    for (int k = 0; k < 20; ++k) {
+      const PolygonMesh triangle = make_mesh({{0, 0, 0}, {1, 0, 0}, {0.4, aspect, 0}}, {{0, 1, 2}});
+      const PolygonMesh pentagon = make_mesh(
+          {{0, 0, 0}, {1, 0, 0}, {1.1, aspect, 0}, {0.5, 1.3 * aspect, 0}, {0, aspect, 0}},
+          {{0, 1, 2, 3, 4}});
+      for (const PolygonMesh& straight : {triangle, pentagon}) {
+        const PolygonMesh mesh = straight.with_points(straight.points() * rotation(k).transpose());
+        for (const char* name : kNames) {
+          SCOPED_TRACE(std::string(name) + " " + std::to_string(aspect));
+          const Discretization d = discretize(mesh, name);
+          ASSERT_TRUE(all_finite(d.stiffness) && all_finite(d.mass) && all_finite(d.gradient));
+          EXPECT_EQ(d.diagnostics.count("excluded_samples"), 0);
+          EXPECT_LT(row_sum_defect(d.stiffness), 100 * kEps);
+          EXPECT_GT(relative_eigenvalues(d.stiffness)[0], -100 * kEps);
+          EXPECT_GT(relative_eigenvalues(d.mass)[0], 0.01);
+          // Turning the points has rounded them, by kEps beside a height of `aspect`.
+          EXPECT_LT(difference(d.stiffness, discretize(straight, name).stiffness),
+                    100 * kEps / aspect);
+        }
+      }
+    }
 }
 
 TEST(PolygonOperators, options_without_a_use_are_errors) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -10,8 +12,36 @@
 namespace carat {
 namespace {
 
+// Lowest eigenvalue of S over its largest entry below which it is singular: of a solvable problem
+// it is of the order of (h / diameter)^2.
+constexpr double kSingular = 1e-11;
+
 // A right-hand side that misses balance by more than this is a mistake, not discretisation error.
 constexpr double kImbalanceLimit = 0.1;
+
+/// Estimate of the lowest eigenvalue over the free rows, by inverse iteration.
+double lowest_eigenvalue(const SpdSolver& solver, const std::vector<bool>& held) {
+  std::mt19937_64 random(1);
+  Vector x(static_cast<Eigen::Index>(held.size()));
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    x[i] =
+        held[static_cast<std::size_t>(i)] ? 0 : static_cast<double>(random() >> 11) * 0x1p-52 - 1;
+  double inverse = 0;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    const double before = x.norm();
+    if (!(before > 0)) return std::numeric_limits<double>::infinity();
+    x = solver.solve(x / before);
+    inverse = x.norm();
+  }
+  return std::isfinite(inverse) && inverse > 0 ? 1 / inverse : 0;
+}
+
+void append_zeros(BoundaryIntegrals& boundary, Index n) {
+  const Index before = static_cast<Index>(boundary.load.size());
+  boundary.load.conservativeResize(n);
+  boundary.load.tail(n - before).setZero();
+  boundary.robin.conservativeResize(n, n);
+}
 
 }  // namespace
 
@@ -26,10 +56,15 @@ Poisson::Poisson(const PolyhedralMesh& mesh, const Discretization& discretizatio
 Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
                  const BoundaryConditions& conditions)
     : mass_(discretization.mass), boundary_load_(std::move(boundary.load)) {
-  const Index n = static_cast<Index>(boundary_load_.size());
-  if (discretization.n_vertices() != n)
+  if (discretization.n_vertices() != boundary_load_.size())
     throw InvalidOption("the discretization has " + std::to_string(discretization.n_vertices()) +
-                        " vertices, the mesh " + std::to_string(n));
+                        " vertices, the mesh " + std::to_string(boundary_load_.size()));
+  const Index n = discretization.n_unknowns();
+  if (discretization.extra.size() > 0) {
+    boundary.load = boundary_load_;
+    append_zeros(boundary, n);
+    boundary_load_ = boundary.load;
+  }
   component_ = matrix_components(discretization.stiffness);
   const Index n_components =
       component_.empty() ? 0 : *std::max_element(component_.begin(), component_.end()) + 1;
@@ -42,7 +77,8 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
       if (component_[v] >= 0 && SparseMatrix::InnerIterator(boundary.robin, v))
         floating_[component_[v]] = false;
   }
-  fix_dirichlet_vertices(conditions);
+  fix_dirichlet_vertices(discretization.n_vertices(), conditions);
+  fix_boundary_unknowns(discretization.extra, conditions);
 
   // A floating component is held at zero at its best determined vertex, and shifted afterwards.
   std::vector<bool> held = fixed_;
@@ -55,10 +91,55 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
   }
   for (const Index v : ground)
     if (v >= 0) held[v] = true;
-  solver_ = std::make_unique<SpdSolver>(system_, held);
+  const auto refuse_singular = [&] {
+    throw SolverFailure("Poisson: with these boundary conditions the stiffness of the operator " +
+                        discretization.name +
+                        " is singular, beyond constants; give Dirichlet data on all of the "
+                        "boundary, eliminate the unknowns of boundary faces, or use the operator "
+                        "diamond");
+  };
+  if (discretization.extra.size() == 0) {
+    solver_ = std::make_unique<SpdSolver>(system_, held);
+    return;
+  }
+  try {
+    solver_ = std::make_unique<SpdSolver>(system_, held);
+  } catch (const SolverFailure&) {
+    refuse_singular();
+  }
+  if (lowest_eigenvalue(*solver_, held) <= kSingular * diagonal.maxCoeff()) refuse_singular();
 }
 
-void Poisson::fix_dirichlet_vertices(const BoundaryConditions& conditions) {
+/// Unknowns on boundary faces and edges whose vertices all have Dirichlet data.
+void Poisson::fix_boundary_unknowns(const ExtraUnknowns& extra,
+                                    const BoundaryConditions& conditions) {
+  const std::vector<bool> of_vertices = fixed_;
+  const Index n_vertices = static_cast<Index>(component_.size()) - extra.size();
+  for (Index k = 0; k < extra.size(); ++k) {
+    const std::span<const Index> vertices = extra.boundary_vertices.row(k);
+    const Index row = n_vertices + k;
+    if (vertices.empty() || component_[row] < 0) continue;
+    if (!std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return of_vertices[v]; }))
+      continue;
+    double value = 0;
+    if (conditions.dirichlet_function) {
+      const Vec3 x = extra.positions.row(k).transpose();
+      value = conditions.dirichlet_function(x);
+      if (!std::isfinite(value))
+        throw InvalidOption("the Dirichlet function is " + std::to_string(value) + " at (" +
+                            std::to_string(x.x()) + ", " + std::to_string(x.y()) + ", " +
+                            std::to_string(x.z()) + "); it must be a finite number");
+    } else {
+      for (const Index v : vertices)
+        value += fixed_values_[v] / static_cast<double>(vertices.size());
+    }
+    fixed_[row] = true;
+    fixed_values_[row] = value;
+    floating_[component_[row]] = false;
+  }
+}
+
+void Poisson::fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions& conditions) {
   if (conditions.dirichlet_vertices.size() != conditions.dirichlet_values.size())
     throw InvalidOption("Dirichlet data: lists of " +
                         std::to_string(conditions.dirichlet_vertices.size()) + " and " +
@@ -72,10 +153,10 @@ void Poisson::fix_dirichlet_vertices(const BoundaryConditions& conditions) {
   for (std::size_t k = 0; k < conditions.dirichlet_vertices.size(); ++k) {
     const Index v = conditions.dirichlet_vertices[k];
     const double value = conditions.dirichlet_values[k];
-    if (v < 0 || v >= n)
+    if (v < 0 || v >= n_vertices)
       throw InvalidOption("Dirichlet data: vertex " + std::to_string(v) +
                               " does not exist; the mesh has vertices 0 to " +
-                              std::to_string(n - 1),
+                              std::to_string(n_vertices - 1),
                           {v});
     if (!std::isfinite(value))
       throw InvalidOption("Dirichlet value at vertex " + std::to_string(v) + " is " +
@@ -94,14 +175,14 @@ void Poisson::fix_dirichlet_vertices(const BoundaryConditions& conditions) {
 PoissonSolution Poisson::solve(const Vector& f) const {
   if (f.size() != system_.rows())
     throw InvalidOption(std::to_string(f.size()) + " values for " + std::to_string(system_.rows()) +
-                        " vertices");
+                        " unknowns");
   return solve_integrated(mass_ * f);
 }
 
 PoissonSolution Poisson::solve_integrated(const Vector& load) const {
   if (load.size() != system_.rows())
     throw InvalidOption(std::to_string(load.size()) + " values for " +
-                        std::to_string(system_.rows()) + " vertices");
+                        std::to_string(system_.rows()) + " unknowns");
   if (!load.allFinite())
     throw InvalidOption("the right-hand side holds a value that is not finite");
   PoissonSolution solution;

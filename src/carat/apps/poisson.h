@@ -11,7 +11,8 @@
 namespace carat {
 
 struct PoissonSolution {
-  Vector values;  ///< one a vertex; vertices of no element keep their Dirichlet value or 0
+  /// One an unknown, the vertices first; vertices of no element keep their Dirichlet value or 0.
+  Vector values;
   /// |S u - b| / (|S| |u| + |b|), maximum norms over the free vertices.
   double relative_residual = 0;
   /// Components without Dirichlet or Robin data: their solution has mean zero (by mass).
@@ -30,13 +31,13 @@ class Poisson {
   /// \throws InvalidOption  vertex or side out of range, a side that is not on the boundary, a
   ///                        value that is not finite, alpha < 0, lists of different length,
   ///                        a vertex with two different Dirichlet values
-  /// \throws SolverFailure  the system is not positive definite
+  /// \throws SolverFailure  the system is not positive definite, or singular beyond constants
   Poisson(const PolygonMesh& mesh, const Discretization& discretization,
           const BoundaryConditions& conditions = {});
   Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
           const BoundaryConditions& conditions = {});
 
-  /// \param f  values at the vertices; the load is mass * f
+  /// \param f  one value an unknown, the vertices first; the load is mass * f
   /// \throws SolverFailure  a floating component's data do not balance: imbalance > 0.1
   PoissonSolution solve(const Vector& f) const;
   /// \param load  integrated right-hand side, e.g. mass * f
@@ -47,7 +48,8 @@ class Poisson {
  private:
   Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
           const BoundaryConditions& conditions);
-  void fix_dirichlet_vertices(const BoundaryConditions& conditions);
+  void fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions& conditions);
+  void fix_boundary_unknowns(const ExtraUnknowns& extra, const BoundaryConditions& conditions);
 
   SparseMatrix system_;  // stiffness plus Robin's matrix
   SparseMatrix mass_;

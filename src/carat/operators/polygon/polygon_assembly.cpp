@@ -59,26 +59,43 @@ void PolygonAssembly::measure_face(const Points& points, Index f) {
     size2 = std::max(size2, x.squaredNorm());
     if (i + 1 < n) double_area += x.cross(from_first(i + 1));
   }
-  const double area = double_area.norm() / 2;
-  const bool sound = area > options_.eps_rel * size2;
+  const double limit = options_.eps_rel * size2;
   Face& result = faces_[f];
-  result = {sound ? area : 0.0, 1.0, Eigen::Matrix<double, 3, 2>::Zero()};
-  result_.sample_measure[f] = result.area;
-  if (!sound) {
+  result = {0.0, 1.0, Eigen::Matrix<double, 3, 2>::Zero()};
+  if (double_area.norm() / 2 > limit) {
+    const Vec3 normal = double_area.normalized();
+    // The frame starts along the face, so that the coordinate across a thin one is rounded like its
+    // width, not like its length.
+    Vec3 along = Vec3::Zero();
+    for (std::size_t i = 0; i < n; ++i) {
+      Vec3 x = from_first(i) - mean;
+      x -= normal.dot(x) * normal;
+      if (x.squaredNorm() > along.squaredNorm()) along = x;
+    }
+    result.axes.col(0) = along.normalized();
+    result.axes.col(1) = normal.cross(along).normalized();
+    const Vec3 upwards = result.axes.col(0).cross(result.axes.col(1));
+    Vec2 middle = Vec2::Zero();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3 x = from_first(i) - mean;
+      corners[i].y = result.axes.transpose() * x;
+      corners[i].height = upwards.dot(x);
+      middle += corners[i].y / static_cast<double>(n);
+    }
+    for (std::size_t i = 0; i < n; ++i) corners[i].y -= middle;
+    // From the same coordinates as the gradients: only then is the gradient of y the identity, to
+    // rounding, on thin faces too.
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec2 &y = corners[i].y, &z = corners[i + 1 == n ? 0 : i + 1].y;
+      result.area += (y.x() * z.y() - y.y() * z.x()) / 2;
+    }
+  }
+  if (!(result.area > limit)) {
+    result.area = result_.sample_measure[f] = 0;
     std::fill(corners, corners + n, Corner{Vec2::Zero(), 0, Vec2::Zero()});
     return;
   }
-  const Vec3 normal = double_area / (2 * area);
-  // Of the axes, the one that is most at right angles to the normal starts the frame.
-  Eigen::Index least = 0;
-  normal.cwiseAbs().minCoeff(&least);
-  result.axes.col(0) = normal.cross(Vec3::Unit(least)).normalized();
-  result.axes.col(1) = normal.cross(result.axes.col(0));
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 x = from_first(i) - mean;
-    corners[i].y = result.axes.transpose() * x;
-    corners[i].height = normal.dot(x);
-  }
+  const double area = result_.sample_measure[f] = result.area;
   Vec2 moment = Vec2::Zero();
   for (std::size_t i = 0; i < n; ++i) {
     const Vec2 &before = corners[i == 0 ? n - 1 : i - 1].y,
