@@ -122,29 +122,32 @@ void AlexaWardetzkyAssembly::make_gradient_pattern() {
 
 void AlexaWardetzkyAssembly::assemble_gradient() {
   OneForms& forms = result_.one_forms;
-  for (Index f = 0; f < mesh_.n_faces(); ++f) {
-    const Face& face = faces_[f];
-    const Index begin = faces().begin(f), n = faces().size(f);
-    for (Index a = 0; a < n; ++a) {
-      const Index c = begin + a;
-      const Index v1 = faces().indices[c], v2 = faces().indices[mesh_.next_corner(f, c)];
-      double* const difference = result_.gradient.valuePtr() + result_.gradient.outerIndexPtr()[c];
-      difference[0] = v1 < v2 ? -1 : 1;
-      difference[1] = -difference[0];
-      double* const row = forms.inner_product.valuePtr() + forms.inner_product.outerIndexPtr()[c];
-      for (Index b = 0; b < n; ++b) row[b] = face.area > 0 ? inner_product(f, a, b) : 0.0;
-      // n x midpoint / |f|
-      const Vec3 m = sides_[c].midpoint;
-      const Vec3 vector =
-          face.area > 0 ? Vec3(face.axes * Vec2(-m.y(), m.x()) / face.area) : Vec3(Vec3::Zero());
+  parallel_blocks(mesh_.n_faces(), options_.threads, [&](int, Index first, Index last) {
+    for (Index f = first; f < last; ++f) {
+      const Face& face = faces_[f];
       const Corner* const corner = corners_of(f);
-      const Vec3 along = face.axes * (corner[next(f, a)].y - corner[a].y);
-      for (Index k = 0; k < 3; ++k)
-        forms.flat.valuePtr()[forms.flat.outerIndexPtr()[c] + k] = along[k];
-      for (Index k = 0; k < 3; ++k)
-        forms.sharp.valuePtr()[forms.sharp.outerIndexPtr()[3 * f + k] + a] = vector[k];
+      const Index begin = faces().begin(f), n = faces().size(f);
+      for (Index a = 0; a < n; ++a) {
+        const Index c = begin + a;
+        const Index v1 = faces().indices[c], v2 = faces().indices[mesh_.next_corner(f, c)];
+        double* const difference =
+            result_.gradient.valuePtr() + result_.gradient.outerIndexPtr()[c];
+        difference[0] = v1 < v2 ? -1 : 1;
+        difference[1] = -difference[0];
+        double* const row = forms.inner_product.valuePtr() + forms.inner_product.outerIndexPtr()[c];
+        for (Index b = 0; b < n; ++b) row[b] = face.area > 0 ? inner_product(f, a, b) : 0.0;
+        // n x midpoint / |f|
+        const Vec3 m = sides_[c].midpoint;
+        const Vec3 vector =
+            face.area > 0 ? Vec3(face.axes * Vec2(-m.y(), m.x()) / face.area) : Vec3(Vec3::Zero());
+        const Vec3 along = face.axes * (corner[next(f, a)].y - corner[a].y);
+        for (Index k = 0; k < 3; ++k) {
+          forms.flat.valuePtr()[forms.flat.outerIndexPtr()[c] + k] = along[k];
+          forms.sharp.valuePtr()[forms.sharp.outerIndexPtr()[3 * f + k] + a] = vector[k];
+        }
+      }
     }
-  }
+  });
 }
 
 }  // namespace
