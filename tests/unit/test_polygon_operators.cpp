@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "carat/apps/heat_geodesics.h"
@@ -18,8 +19,6 @@ namespace {
 
 constexpr const char* kNames[] = {"alexa_wardetzky", "de_goes", "vem"};
 
-/// A quarter of a turn of u = x y has energy on the unit square that only the stabilising term sees
-/// beside the gradient at the middle.
 PolygonMesh unit_square(double size = 1) {
   Points points(4, 3);
   points << 0, 0, 0, size, 0, 0, size, size, 0, 0, size, 0;
@@ -233,22 +232,38 @@ TEST(PolygonOperators, normalised_samples_have_unit_length_at_any_size) {
   }
 }
 
-TEST(PolygonOperators, geodesics_on_a_sphere_of_quads) {
-  const PolygonMesh mesh = generate_mesh("sphere-quads", {.level = 3});
-  for (const char* name : kNames) {
-    // The stiffer alexa_wardetzky needs a longer time: after h^2 its heat still changes sign far
-    // from the source, as no maximum principle holds.
-    const double t_coef = name == std::string("alexa_wardetzky") ? 4 : 1;
-    const HeatGeodesics geodesics(mesh, discretize(mesh, name), {.t_coef = t_coef});
-    const Vector distance = geodesics.distance(0).values;
-    double squares = 0;
-    for (Index v = 0; v < mesh.n_vertices(); ++v) {
-      const double exact = std::acos(std::clamp(mesh.point(v).dot(mesh.point(0)), -1.0, 1.0));
-      squares += std::pow(distance[v] - exact, 2);
-    }
-    // The mean distance is pi / 2; diffusion over a time of h^2, h = 0.12, costs some h / 2.
-    EXPECT_LT(std::sqrt(squares / mesh.n_vertices()), 0.07 * std::sqrt(t_coef)) << name;
+/// Root mean square of the error of distances from vertex 0 of the unit sphere, beside distances.
+double geodesic_error(const PolygonMesh& mesh, const char* name, const DiscretizationOptions& opts,
+                      double t_coef) {
+  const HeatGeodesics geodesics(mesh, discretize(mesh, name, opts), {.t_coef = t_coef});
+  const Vector distance = geodesics.distance(0).values;
+  Vector exact(mesh.n_vertices());
+  for (Index v = 0; v < mesh.n_vertices(); ++v)
+    exact[v] = std::acos(std::clamp(mesh.point(v).dot(mesh.point(0)), -1.0, 1.0));
+  return (distance - exact).norm() / exact.norm();
+}
+
+TEST(PolygonOperators, geodesics_on_spheres_with_the_options_of_the_cards) {
+  struct Case {
+    const char* name;
+    DiscretizationOptions options;
+    double t_coef;
+  };
+  const Case cases[] = {{"alexa_wardetzky", {}, 4},
+                        {"alexa_wardetzky", {.lambda = 1}, 1},
+                        {"de_goes", {}, 1},
+                        {"vem", {}, 2},
+                        {"vem", {.mass = MassKind::Lumped}, 1}};
+  for (const char* family : {"sphere-quads", "sphere-hexagons", "sphere-concave"}) {
+    const PolygonMesh mesh = generate_mesh(family, {.level = 3});
+    // Measured: 0.6 to 4.3 %.
+    for (const Case& c : cases)
+      EXPECT_LT(geodesic_error(mesh, c.name, c.options, c.t_coef), 0.05) << c.name << " " << family;
   }
+  // Why they say so: without a maximum principle, heat of the defaults changes sign.
+  const PolygonMesh concave = generate_mesh("sphere-concave", {.level = 3});
+  for (const char* name : {"alexa_wardetzky", "vem"})
+    EXPECT_GT(geodesic_error(concave, name, {}, 1), 0.5) << name;
 }
 
 TEST(PolygonOperators, degenerate_and_odd_faces) {

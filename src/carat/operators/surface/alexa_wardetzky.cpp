@@ -163,10 +163,10 @@ extern const SurfaceOperator alexa_wardetzky_surface_operator = {
      "differences "
      "that no vector in the face's plane has. Mass |f| / n to each of n vertices.",
      "vertices", "vertices of common faces: 7 entries a row on regular triangles",
-     "For comparison, and where differences along edges are wanted as gradients. On faces that are "
-     "not planar the maximal projection counts, so the mass sums to less than the area of the "
-     "virtual triangles. Being stiff, it lets heat change sign far from the source on quads: for "
-     "geodesics take --lambda 1 or less, or --t-coef 4 or more.",
+     "For comparison, and where differences along edges are wanted as gradients. On faces that"
+     " are not planar the maximal projection counts, so the mass sums to less than the area of"
+     " the virtual triangles. Being stiff, it lets heat change sign far from the source unless"
+     " faces are triangles: for geodesics take --lambda 1 or less, or --t-coef 4 or more.",
      "Alexa, Wardetzky: Discrete Laplacians on General Polygonal Meshes, 2011"},
     [](const PolygonMesh& mesh, const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
       return std::make_unique<AlexaWardetzkyAssembly>(mesh, options);

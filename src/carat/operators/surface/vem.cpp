@@ -112,7 +112,8 @@ extern const SurfaceOperator vem_surface_operator = {
      "from the same projection. Faces lie in the plane normal to their vector area.",
      "vertices", "vertices of common faces: 7 entries a row on regular triangles",
      "The reference of the simulation community: planar polygons of any shape, also not "
-     "star-shaped.",
+     "star-shaped. With its full mass heat may change sign far from the source on hexagons and "
+     "concave faces: for geodesics take --mass lumped, or --t-coef 2 or more.",
      "Beirao da Veiga et al.: Basic principles of Virtual Element Methods, 2013; The Hitchhiker's "
      "Guide to the Virtual Element Method, 2014"},
     [](const PolygonMesh& mesh, const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
