@@ -33,6 +33,7 @@ struct VolumeClaimCase {
            std::count(entry->options.masses.begin(), entry->options.masses.end(),
                       MassKind::Lumped) > 0;
   }
+  bool virtual_elements() const { return std::string(entry->name) == "vem"; }
   bool cube() const { return family.rfind("cube-", 0) == 0; }
 };
 

@@ -1,11 +1,12 @@
 // The linear virtual element method on polyhedra: Beirao da Veiga et al. 2013.
 // S_c = |c| G^T K G + tr(K)/3 (I - Pi)^T Lambda (I - Pi), Pi = 1 1^T / n + Y G the projection to
 // linear functions at the vertices Y, which are counted from their mean. G integrates over the
-// virtual triangles of the cell's boundary. M_c = C^T H C + |c| (I - Pi)^T (I - Pi), C = [1^T / n; G]
-// and H the moments of (1, y). As Pi has rank four, an entry takes two scalar products.
+// virtual triangles of the cell's boundary. M_c = C^T H C + |c| (I - Pi)^T (I - Pi), C = [1^T / n;
+// G] and H the moments of (1, y). As Pi has rank four, an entry takes two scalar products.
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 
@@ -97,8 +98,9 @@ void VolumeVemAssembly::measure_cell(Index c, Array<Index>& place) {
   }
   // Coordinates along the principal axes: products y . g are then rounded like themselves on thin
   // cells too, where y is small and g large across the cell.
-  axes.computeDirect(spread);
+  axes.compute(spread);  // orthonormal for nearly equal eigenvalues too, unlike computeDirect
   axes_[c] = axes.eigenvectors();
+  if (axes_[c].determinant() < 0) axes_[c].col(0) *= -1;  // areas and volumes keep their signs
   for (Index a = 0; a < n; ++a) corners[a].y = axes_[c].transpose() * corners[a].y;
   double size2 = 0;
   for (Index a = 0; a < n; ++a)
@@ -136,8 +138,8 @@ void VolumeVemAssembly::measure_cell(Index c, Array<Index>& place) {
   if (!sound) return;
   Eigen::Matrix3d tensor = axes_[c].transpose() * cell_tensor(options_, c) * axes_[c];
   if (options_.coefficient)
-    tensor *= coefficient_at(options_,
-                             origin_ + mean + axes_[c] * (moments.col(0).tail<3>() / volume));
+    tensor *=
+        coefficient_at(options_, origin_ + mean + axes_[c] * (moments.col(0).tail<3>() / volume));
   Eigen::Matrix4d plain = Eigen::Matrix4d::Zero(), weighted = Eigen::Matrix4d::Zero();
   for (Index a = 0; a < n; ++a) {
     Corner& corner = corners[a];
@@ -167,18 +169,16 @@ void VolumeVemAssembly::assemble_matrices() {
         if (!(result_.sample_measure[c] > 0)) return 0.0;
         const Corner &row = corners_of(c)[a], &column = corners_of(c)[b];
         return row.g.dot(column.stiffness) + column.stiffness_0 -
-               row.weight *
-                   (1.0 / vertices().size(c) + row.y.dot(column.g) - (a == b ? 1.0 : 0.0));
+               row.weight * (1.0 / vertices().size(c) + row.y.dot(column.g) - (a == b ? 1.0 : 0.0));
       });
-  assemble_cell_blocks(
-      result_.mass, options_.mass == MassKind::Lumped, incidence_, options_.threads,
-      [&](Index c, Index a, Index b) {
-        const double volume = result_.sample_measure[c];
-        if (!(volume > 0)) return 0.0;
-        const Corner &row = corners_of(c)[a], &column = corners_of(c)[b];
-        return row.g.dot(column.mass) + column.mass_0 -
-               volume * (row.y.dot(column.g) - (a == b ? 1.0 : 0.0));
-      });
+  assemble_cell_blocks(result_.mass, options_.mass == MassKind::Lumped, incidence_,
+                       options_.threads, [&](Index c, Index a, Index b) {
+                         const double volume = result_.sample_measure[c];
+                         if (!(volume > 0)) return 0.0;
+                         const Corner &row = corners_of(c)[a], &column = corners_of(c)[b];
+                         return row.g.dot(column.mass) + column.mass_0 -
+                                volume * (row.y.dot(column.g) - (a == b ? 1.0 : 0.0));
+                       });
 }
 
 void VolumeVemAssembly::make_gradient_pattern() {
@@ -225,7 +225,8 @@ void VolumeVemAssembly::collect_frames() {
   for (Index c = 0; c < mesh_.n_cells(); ++c)
     if (result_.sample_measure[c] > 0)
       for (const Index v : vertices().row(c))
-        result_.frames.parts.push_back({result_.sample_measure[c] / vertices().size(c), c, c, {v, -1, -1}});
+        result_.frames.parts.push_back(
+            {result_.sample_measure[c] / vertices().size(c), c, c, {v, -1, -1}});
 }
 
 void VolumeVemAssembly::report() {
@@ -279,7 +280,9 @@ extern const VolumeOperator vem_volume_operator = {
      "least "
      "the cell's diameter. Mass from the same projection.",
      "vertices", "vertices of common cells",
-     "The reference of the simulation community, on polyhedra of any shape. One gradient a cell.",
+     "The reference of the simulation community, on polyhedra of any shape. One gradient a cell. "
+     "Stiff in functions that are not linear on a cell: second order shows from some 16 cells a "
+     "side on. With its full mass heat changes sign: for geodesics take --mass lumped.",
      "Beirao da Veiga et al.: Basic principles of Virtual Element Methods, 2013; The Hitchhiker's "
      "Guide to the Virtual Element Method, 2014"},
     [](const PolyhedralMesh& mesh,
