@@ -33,6 +33,8 @@ Json describe_options(const OperatorOptionSet& options) {
   for (const MassKind kind : options.masses) json["mass"].push_back(mass_kind_name(kind));
   json["virtual_vertex"] = options.virtual_vertex;
   if (options.lambda) json["lambda"] = *options.lambda;
+  if (options.theta) json["theta"] = *options.theta;
+  if (options.tau) json["tau"] = *options.tau;
   if (options.boundary_unknowns) json["boundary_unknowns"] = *options.boundary_unknowns;
   return json;
 }

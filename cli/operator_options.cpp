@@ -19,8 +19,9 @@ constexpr Names<VirtualPoint, 3> kVirtualPoints{{{"area", VirtualPoint::AreaMini
                                                  {"trace", VirtualPoint::TraceMinimizer}}};
 constexpr Names<AffineWeights, 2> kWeights{
     {{"in-plane", AffineWeights::InPlane}, {"minimum-norm", AffineWeights::MinimumNorm}}};
-constexpr Names<MassKind, 4> kMasses{{{"default", MassKind::Default},
+constexpr Names<MassKind, 5> kMasses{{{"default", MassKind::Default},
                                       {"full", MassKind::Full},
+                                      {"moment-exact", MassKind::MomentExact},
                                       {"lumped", MassKind::Lumped},
                                       {"voronoi", MassKind::Voronoi}}};
 constexpr Names<bool, 2> kBoundaryUnknowns{{{"keep", true}, {"eliminate", false}}};
@@ -47,6 +48,8 @@ DiscretizationOptions to_library(const OperatorOptions& options) {
   result.virtual_vertex.keep_in_kernel = !options.keep_flipped;
   result.mass = value_of(kMasses, options.mass);
   result.lambda = options.lambda;
+  result.theta = options.theta;
+  result.tau = options.tau;
   if (!options.boundary_unknowns.empty())
     result.boundary_unknowns = value_of(kBoundaryUnknowns, options.boundary_unknowns);
   result.degenerate = options.strict ? DegeneratePolicy::Strict : DegeneratePolicy::Report;
@@ -72,6 +75,8 @@ Json to_json(const char* name, const OperatorOptionSet& taken,
     json["keep_flipped"] = !options.virtual_vertex.keep_in_kernel;
   }
   if (options.lambda) json["lambda"] = *options.lambda;
+  if (options.theta) json["theta"] = *options.theta;
+  if (options.tau && options.mass == MassKind::MomentExact) json["tau"] = *options.tau;
   if (options.boundary_unknowns)
     json["boundary_unknowns"] = name_of(kBoundaryUnknowns, *options.boundary_unknowns);
   return json;
@@ -190,8 +195,9 @@ void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surf
       ->default_str("in-plane")
       ->group("Operator");
   app.add_option("--mass", options.mass,
-                 "The mass matrix: full, lumped (row sums) or, for cotan,\n"
-                 "voronoi; the default is the operator's own")
+                 "The mass matrix: full, lumped (row sums), for diamonds\n"
+                 "moment-exact, for cotan voronoi; the default is the\n"
+                 "operator's own")
       ->check(CLI::IsMember(names(kMasses)))
       ->default_str("default")
       ->group("Operator");
@@ -203,6 +209,16 @@ void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surf
                  "Weight of the stabilising term of the operators that have\n"
                  "one; the default is the operator's own")
       ->check(CLI::PositiveNumber)
+      ->group("Operator");
+  app.add_option("--theta", options.theta,
+                 "Stabilised diamonds: share of the diamond's stiffness,\n"
+                 "the rest is bunge's; the default is the operator's own")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group("Operator");
+  app.add_option("--tau", options.tau,
+                 "Moment-exact mass: 0 splits a diamond at its base, 1 about\n"
+                 "its axis; the default is the operator's own")
+      ->check(CLI::Range(0.0, 1.0))
       ->group("Operator");
   if (!surfaces_only)
     app.add_option("--boundary-unknowns", options.boundary_unknowns,

@@ -19,7 +19,7 @@ struct OperatorOptions {
   std::string virtual_point;  ///< empty, like all below: the library's default
   std::string weights;
   std::string mass;
-  std::optional<double> lambda;
+  std::optional<double> lambda, theta, tau;
   std::string boundary_unknowns;
   bool strict = false;
   bool keep_flipped = false;

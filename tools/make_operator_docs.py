@@ -145,6 +145,9 @@ def options_of(entry):
         lines.append("`--virtual-point`, `--weights`, `--keep-flipped`")
     if "lambda" in options:
         lines.append(f"`--lambda` (default {options['lambda']:g})")
+    for name in ("theta", "tau"):
+        if name in options:
+            lines.append(f"`--{name}` (default {options[name]:.3g})")
     if "boundary_unknowns" in options:
         default = "keep" if options["boundary_unknowns"] else "eliminate"
         lines.append(f"`--boundary-unknowns keep|eliminate` (default {default})")

@@ -51,8 +51,9 @@ class List(CaratTest):
                  for what in ["operators", "families", "formats", "apps"]}
         names = {what: [entry["name"] for entry in entries] for what, entries in lists.items()}
         self.assertEqual(names["operators"],
-                         ["diamond", "bunge", "cotan", "alexa_wardetzky", "de_goes", "vem",
-                          "diamond", "bunge", "primal_tet", "dual_tet", "ceve", "cevefe", "vem"])
+                         ["diamond", "stabilized_diamond", "bunge", "cotan", "alexa_wardetzky", "de_goes",
+                          "vem", "diamond", "stabilized_diamond", "bunge", "primal_tet",
+                          "dual_tet", "ceve", "cevefe", "vem"])
         for family in ["sphere-hexagons", "ball-voronoi"]:
             self.assertIn(family, names["families"])
         self.assertIn("vtp", names["formats"])

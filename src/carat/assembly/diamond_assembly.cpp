@@ -7,10 +7,64 @@
 namespace carat {
 namespace {
 
+using Corner = DiamondWorkspace::Corner;
+using Face = DiamondWorkspace::Face;
+
+/// What the face at `corner`, a side of the diamond, adds at the side's first vertex a and its
+/// second b.
+/// \param a_is_1  a is the diamond's vertex 1
+inline void add_side(const DiamondTerm& term, Index corner, bool a_is_1, Corner& a, Corner& b,
+                     Face& face) {
+  face.mass += term.mass_share;
+  face.gamma += term.gamma;
+  // -sigma beta d at this corner; minus that at the next.
+  const double beta = a_is_1 == (term.left == corner) ? term.beta : -term.beta;
+  a.beta += beta;
+  b.beta -= beta;
+  // A diamond's two sides each bring half of what belongs to its hinge.
+  double side = 0.5 * term.alpha, share = 0.5 * term.mass_share;
+  if (term.left < 0 || term.right < 0) {
+    // p_across is half of both ends: u at the midpoint of the hinge is their mean.
+    const double half_gamma = 0.5 * term.gamma;
+    a.diagonal += half_gamma - beta;
+    b.diagonal += half_gamma + beta;
+    a.beta -= half_gamma;
+    b.beta -= half_gamma;
+    side = term.alpha - 0.5 * half_gamma;
+    share = term.mass_share;
+  }
+  a.side += side;
+  a.diagonal += side;
+  b.diagonal += side;
+  a.mass += share;
+  b.mass += share;
+}
+inline double across_coupling(const DiamondTerm& term) { return term.gamma; }
+
+inline void add_side(const GeneralDiamondTerm& term, Index corner, bool a_is_1, Corner& a,
+                     Corner& b, Face& face) {
+  const bool is_left = term.left == corner;
+  const double to_1 = is_left ? term.k1l : term.k1r, to_2 = is_left ? term.k2l : term.k2r;
+  const double to_a = a_is_1 ? to_1 : to_2, to_b = a_is_1 ? to_2 : to_1;
+  face.mass += is_left ? term.mass_left : term.mass_right;
+  face.gamma += to_a + to_b + term.klr;
+  a.beta -= to_a;
+  b.beta -= to_b;
+  // A diamond's two sides each bring half of what belongs to its hinge.
+  const double part = term.left < 0 || term.right < 0 ? 1.0 : 0.5;
+  const double side = part * term.k12;
+  a.side += side;
+  a.diagonal += side + to_a;
+  b.diagonal += side + to_b;
+  a.mass += part * (a_is_1 ? term.mass1 : term.mass2);
+  b.mass += part * (a_is_1 ? term.mass2 : term.mass1);
+}
+inline double across_coupling(const GeneralDiamondTerm& term) { return term.klr; }
+
 /// The diamonds of an edge: one, unless more than two faces meet there.
-template <bool kOneAnEdge>
+template <bool kOneAnEdge, class Term>
 struct EdgeDiamonds {
-  const DiamondTerm* terms;
+  const Term* terms;
   const Index* first;  // null if kOneAnEdge
 
   /// Calls visit(term) for the diamonds that `corner` is a side of.
@@ -26,52 +80,28 @@ struct EdgeDiamonds {
 };
 
 /// The values of the corners, faces and rings of faces [begin, end).
-template <bool kOneAnEdge>
+template <bool kOneAnEdge, class Term>
 void fill_faces(const SurfaceIncidence& mesh, const FaceRings& rings,
-                const EdgeDiamonds<kOneAnEdge>& diamonds, const Array<double>& weights, Index begin,
-                Index end, DiamondWorkspace& out) {
+                const EdgeDiamonds<kOneAnEdge, Term>& diamonds, const Array<double>& weights,
+                Index begin, Index end, DiamondWorkspace& out) {
   for (Index f = begin; f < end; ++f) {
     const Index first = mesh.faces.begin(f), last = mesh.faces.end(f);
     double* across = out.across.data() + rings.begin(f);
-    DiamondWorkspace::Face face{0, 0};
-    std::fill(out.corners.begin() + first, out.corners.begin() + last,
-              DiamondWorkspace::Corner{0, 0, 0, 0, 0});
+    Face face{0, 0};
+    std::fill(out.corners.begin() + first, out.corners.begin() + last, Corner{0, 0, 0, 0, 0});
     for (Index corner = first; corner < last; ++corner) {
       const Index edge = mesh.corner_edges[corner];
       const Index next = corner + 1 == last ? first : corner + 1;
-      DiamondWorkspace::Corner& a = out.corners[corner];
-      DiamondWorkspace::Corner& b = out.corners[next];
-      diamonds.for_side(edge, corner, [&](const DiamondTerm& term) {
-        face.mass += term.mass_share;
-        face.gamma += term.gamma;
-        // -sigma beta d at this corner; minus that at the next.
-        const bool along_hinge = mesh.faces.indices[corner] == term.v1;
-        const double beta = along_hinge == (term.left == corner) ? term.beta : -term.beta;
-        a.beta += beta;
-        b.beta -= beta;
-        // A diamond's two sides each bring half of what belongs to its hinge.
-        double side = 0.5 * term.alpha, share = 0.5 * term.mass_share;
-        if (term.left < 0 || term.right < 0) {
-          // p_across is half of both ends: u at the midpoint of the hinge is their mean.
-          const double half_gamma = 0.5 * term.gamma;
-          a.diagonal += half_gamma - beta;
-          b.diagonal += half_gamma + beta;
-          a.beta -= half_gamma;
-          b.beta -= half_gamma;
-          side = term.alpha - 0.5 * half_gamma;
-          share = term.mass_share;
-        }
-        a.side += side;
-        a.diagonal += side;
-        b.diagonal += side;
-        a.mass += share;
-        b.mass += share;
+      Corner& a = out.corners[corner];
+      Corner& b = out.corners[next];
+      diamonds.for_side(edge, corner, [&](const Term& term) {
+        add_side(term, corner, mesh.faces.indices[corner] == term.v1, a, b, face);
       });
       for (const Index other : mesh.edge_corners.row(edge)) {
         if (other == corner) continue;
         double gamma = 0;
-        diamonds.for_side(edge, corner, [&](const DiamondTerm& term) {
-          if (term.left == other || term.right == other) gamma += term.gamma;
+        diamonds.for_side(edge, corner, [&](const Term& term) {
+          if (term.left == other || term.right == other) gamma += across_coupling(term);
         });
         // The side's two ends are vertices of f as well.
         const Index g = mesh.corner_faces[other];
@@ -126,7 +156,7 @@ void fill_rows(SparseMatrix& stiffness_matrix, SparseMatrix& mass_matrix, bool l
       const Index first = mesh.faces.begin(f), last = mesh.faces.end(f);
       const Index next = corner + 1 == last ? first : corner + 1;
       const Index previous = corner == first ? last - 1 : corner - 1;
-      const DiamondWorkspace::Corner& own = values.corners[corner];
+      const Corner& own = values.corners[corner];
       const double weight = weights[corner];
       const double face_weight = own.beta + values.faces[f].gamma * weight;
       const double mass_weight = values.faces[f].mass * weight;
@@ -153,9 +183,10 @@ void fill_rows(SparseMatrix& stiffness_matrix, SparseMatrix& mass_matrix, bool l
 
 }  // namespace
 
+template <class Term>
 void assemble_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_mass,
                        const SurfaceIncidence& mesh, const FaceRings& rings,
-                       const Array<DiamondTerm>& terms, const Array<Index>& edge_diamonds,
+                       const Array<Term>& terms, const Array<Index>& edge_diamonds,
                        const Array<double>& weights, int threads, DiamondWorkspace& workspace) {
   const Index n_vertices = static_cast<Index>(stiffness.rows());
   const Index n_faces = mesh.faces.n_rows();
@@ -165,11 +196,11 @@ void assemble_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_
   workspace.threads.resize(static_cast<std::size_t>(resolve_threads(threads)));
   parallel_blocks(n_faces, threads, [&](int, Index begin, Index end) {
     if (edge_diamonds.empty())
-      fill_faces(mesh, rings, EdgeDiamonds<true>{terms.data(), nullptr}, weights, begin, end,
+      fill_faces(mesh, rings, EdgeDiamonds<true, Term>{terms.data(), nullptr}, weights, begin, end,
                  workspace);
     else
-      fill_faces(mesh, rings, EdgeDiamonds<false>{terms.data(), edge_diamonds.data()}, weights,
-                 begin, end, workspace);
+      fill_faces(mesh, rings, EdgeDiamonds<false, Term>{terms.data(), edge_diamonds.data()},
+                 weights, begin, end, workspace);
   });
   parallel_blocks(n_vertices, threads, [&](int block, Index begin, Index end) {
     DiamondWorkspace::Thread& scratch = workspace.threads[static_cast<std::size_t>(block)];
@@ -178,5 +209,12 @@ void assemble_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_
     fill_rows(stiffness, mass, lumped_mass, mesh, rings, weights, begin, end, workspace, scratch);
   });
 }
+
+template void assemble_diamonds(SparseMatrix&, SparseMatrix&, bool, const SurfaceIncidence&,
+                                const FaceRings&, const Array<DiamondTerm>&, const Array<Index>&,
+                                const Array<double>&, int, DiamondWorkspace&);
+template void assemble_diamonds(SparseMatrix&, SparseMatrix&, bool, const SurfaceIncidence&,
+                                const FaceRings&, const Array<GeneralDiamondTerm>&,
+                                const Array<Index>&, const Array<double>&, int, DiamondWorkspace&);
 
 }  // namespace carat

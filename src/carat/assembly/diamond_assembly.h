@@ -6,7 +6,8 @@
 // the sides of a face, sigma = + where it is to the left, the row of its vertex i is
 //   b_i p_f + p_f,i (b + Gamma p_f - sum over sides of gamma p_across) + the alpha of its sides,
 //   b = -sum over sides of sigma beta d,  Gamma = sum of gamma.
-// These are computed once a face; then every row adds the few faces that belong to it.
+// These are computed once a face; then every row adds the few faces that belong to it. An energy of
+// general couplings differs only in what a side brings to b and Gamma.
 
 #include <vector>
 
@@ -21,6 +22,16 @@ namespace carat {
 struct DiamondTerm {
   double alpha, beta, gamma;
   double mass_share;  ///< [length^2]
+  Index v1, v2;
+  Index left, right;
+};
+
+/// A diamond with any energy on its four vertices, the sum of couplings k_ij (u_i - u_j)^2, and a
+/// mass for each of them. Where a corner is missing, what belongs to the midpoint of the hinge has
+/// been folded into the hinge's ends.
+struct GeneralDiamondTerm {
+  double k12, k1l, k2l, k1r, k2r, klr;
+  double mass1, mass2, mass_left, mass_right;  ///< [length^2]
   Index v1, v2;
   Index left, right;
 };
@@ -51,12 +62,13 @@ struct DiamondWorkspace {
 /// Fills `stiffness`, whose pattern is that of diamond_patterns(mesh, rings), with the sum over all
 /// diamonds, and `mass` = P^T M^ P, whose pattern is face_pattern(mesh), or diagonal: then with the
 /// row sums.
-/// \param terms           the diamonds
+/// \param terms           the diamonds: DiamondTerm or GeneralDiamondTerm
 /// \param edge_diamonds   edge -> first diamond, n_edges + 1 numbers; empty: one diamond an edge
 /// \param weights         corner -> affine weight
+template <class Term>
 void assemble_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_mass,
                        const SurfaceIncidence& mesh, const FaceRings& rings,
-                       const Array<DiamondTerm>& terms, const Array<Index>& edge_diamonds,
+                       const Array<Term>& terms, const Array<Index>& edge_diamonds,
                        const Array<double>& weights, int threads, DiamondWorkspace& workspace);
 
 }  // namespace carat

@@ -27,15 +27,17 @@ void fill_cells(const VolumeIncidence& mesh, const CellRings& rings,
     for (const Index f : mesh.cells.row(c)) {
       const FaceCells cells = mesh.face_cells[f];
       const Face& face = out.faces[f];
-      const double sign = cells.above == c ? 1.0 : -1.0;
+      const bool is_above = cells.above == c;
+      const double of_face = is_above ? face.above : face.below;
       for (Index corner = mesh.faces.begin(f); corner < mesh.faces.end(f); ++corner)
-        own[*place++] += sign * (out.corners[corner].alpha + face.alpha * face_weights[corner]);
-      gamma += face.gamma;
-      mass += face.tip_mass;
+        own[*place++] += (is_above ? out.corners[corner].above : out.corners[corner].below) +
+                         of_face * face_weights[corner];
+      gamma += is_above ? face.gamma_above : face.gamma_below;
+      mass += is_above ? face.mass_above : face.mass_below;
       const Index other = cells.other(c);
       if (other < 0) continue;
       for (Index k = mesh.cell_vertices.begin(other); k < mesh.cell_vertices.end(other); ++k)
-        coupling[*place++] -= face.gamma * cell_weights[k];
+        coupling[*place++] -= face.gamma_across * cell_weights[k];
     }
     for (Index k = 0; k < n; ++k) coupling[k] += own[k] + gamma * weights[k];
     out.cell_mass[c] = mass;

@@ -7,7 +7,8 @@
 // vector over the vertices, the row of vertex i is
 //   sum over its cells of p_c,i (b_c + Gamma_c p_c - sum over faces of gamma p_across) + b_c,i p_c
 //   + the rows of A,    b_c = sum over faces of sigma a,  Gamma_c = sum of gamma,
-// sigma = + where the cell is above. The bracket is computed once a cell. At the boundary the
+// sigma = + where the cell is above. Jumps between the halves of diamonds make a and gamma of the
+// two cells differ, so each has its own. The bracket is computed once a cell. At the boundary the
 // virtual vertex of the face stands for the missing cell, and is folded into A and a.
 
 #include <vector>
@@ -23,14 +24,16 @@ struct VolumeDiamondWorkspace {
   /// vertex and the next, and -`spoke` between the vertex and the virtual one.
   struct Corner {
     double side, spoke, diagonal;
-    double alpha;  ///< a at the vertex
-    double mass;   ///< of the vertex itself  [length^3]
+    double below, above;  ///< sigma a at the vertex, of either cell
+    double mass;          ///< of the vertex itself  [length^3]
   };
   /// A and a at the virtual vertex, and what belongs to the face as a whole.
   struct Face {
-    double spokes, alpha, gamma;
-    double mass;      ///< of the virtual vertex  [length^3]
-    double tip_mass;  ///< of each cell's virtual vertex  [length^3]
+    double spokes, below, above;
+    double gamma_below, gamma_above;  ///< gamma of either cell
+    double gamma_across;              ///< gamma between them
+    double mass;                      ///< of the virtual vertex  [length^3]
+    double mass_below, mass_above;    ///< of each cell's virtual vertex  [length^3]
   };
   Array<Corner> corners;
   Array<Face> faces;

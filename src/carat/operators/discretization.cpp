@@ -46,12 +46,14 @@ Points average_parts(const Discretization& d, const Vector& vectors, Index n_row
   return sum;
 }
 
-/// Scales groups of `size` values to unit length. \return flags of those without a length
-std::vector<bool> normalise(Vector& values, Index size) {
+/// Scales the first `length` of groups of `size` values to unit length, and clears the others.
+/// \return flags of those without a length
+std::vector<bool> normalise(Vector& values, Index size, Index length) {
   const Index n = static_cast<Index>(values.size()) / size;
   std::vector<bool> vanished(static_cast<std::size_t>(n), false);
   for (Index s = 0; s < n; ++s) {
-    auto g = values.segment(Eigen::Index{size} * s, size);
+    auto g = values.segment(Eigen::Index{size} * s, length);
+    values.segment(Eigen::Index{size} * s + length, size - length).setZero();
     // Scaled before squaring, where the squares of small values would vanish.
     const double scale = g.lpNorm<Eigen::Infinity>();
     if (scale >= std::numeric_limits<double>::min()) {
@@ -94,9 +96,10 @@ Vector Discretization::apply_divergence(const Vector& vectors) const {
 
 std::vector<bool> Discretization::normalise_samples(Vector& vectors) const {
   require_gradient(*this, vectors.size());
-  if (!is_one_form()) return normalise(vectors, gradient_dimension);
+  if (!is_one_form())
+    return normalise(vectors, gradient_dimension, gradient_dimension - jump_components);
   Vector sharpened = one_forms.sharp * vectors;
-  std::vector<bool> vanished = normalise(sharpened, 3);
+  std::vector<bool> vanished = normalise(sharpened, 3, 3);
   vectors = one_forms.flat * sharpened;
   return vanished;
 }

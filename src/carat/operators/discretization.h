@@ -31,7 +31,9 @@ enum class DiscretizationParts {
 enum class MassKind {
   Default,  ///< the first of the operator's own, see OperatorEntry::options
   Full,     ///< the operator's own inner product: linear elements, or P^T M P
-  Lumped,   ///< its row sums
+  /// P^T M P with shares of every diamond that integrate linear functions exactly, see tau
+  MomentExact,
+  Lumped,   ///< the row sums of the full one
   Voronoi,  ///< diagonal: mixed Voronoi areas (Meyer, Desbrun, Schroeder, Barr 2003)
 };
 
@@ -44,6 +46,12 @@ struct DiscretizationOptions {
   /// Keep values of boundary faces and edges as unknowns, or eliminate them as means of their
   /// vertices; default: the operator's own.
   std::optional<bool> boundary_unknowns{};
+  /// Stabilised diamonds, in [0, 1]: stiffness theta S_diamond + (1 - theta) S_bunge; default: the
+  /// operator's own.
+  std::optional<double> theta{};
+  /// The moment-exact mass, in [0, 1]: 0 splits a diamond at its base, 1 about the axis from tip to
+  /// tip; default: the operator's own.
+  std::optional<double> tau{};
   DegeneratePolicy degenerate = DegeneratePolicy::Report;
   /// A sample whose measure is <= eps_rel * (its diameter)^2, in volumes ^3, is degenerate. At the
   /// default only rounding noise is.
@@ -113,6 +121,9 @@ struct Discretization {
   /// Empty unless asked for, and for operators that define none.
   SparseMatrix gradient;
   Index gradient_dimension = 0;  ///< 1: one-forms
+  /// How many of a sample's last components are no part of its vector but jumps between its parts,
+  /// scaled so that L = D G: 0 for most operators, 1 for stabilised diamonds.
+  Index jump_components = 0;
   OneForms one_forms;
   Vector sample_measure;  ///< area or volume of every sample, 0 where degenerate
   GradientFrames frames;  ///< empty unless asked for

@@ -53,6 +53,20 @@ DiscretizationOptions settle_options(const std::string& name, const OperatorOpti
     throw InvalidOption("lambda is " + number(*options.lambda) +
                         "; it must be a positive finite number");
   if (taken.lambda && !options.lambda) options.lambda = taken.lambda;
+  const auto settle_fraction = [&](const char* what, const std::optional<double>& own,
+                                   std::optional<double>& value, const std::string& no_use) {
+    if (!own && value) throw InvalidOption("the operator " + name + no_use);
+    if (value && !(*value >= 0 && *value <= 1))
+      throw InvalidOption(std::string(what) + " is " + number(*value) +
+                          "; it must be a number from 0 to 1");
+    if (own && !value) value = own;
+  };
+  settle_fraction("theta", taken.theta, options.theta,
+                  " has no stabilised diamonds; leave out theta");
+  settle_fraction("tau", taken.tau, options.tau, " has no moment-exact mass; leave out tau");
+  if (wanted.tau && options.mass != MassKind::MomentExact)
+    throw InvalidOption(std::string("tau belongs to the moment-exact mass, not to the ") +
+                        mass_kind_name(options.mass) + " one; leave it out");
   if (!taken.boundary_unknowns && options.boundary_unknowns)
     throw InvalidOption("the operator " + name +
                         " has no unknowns on boundary faces; leave out boundary_unknowns");
@@ -78,6 +92,8 @@ const char* mass_kind_name(MassKind kind) {
   switch (kind) {
     case MassKind::Full:
       return "full";
+    case MassKind::MomentExact:
+      return "moment-exact";
     case MassKind::Lumped:
       return "lumped";
     case MassKind::Voronoi:

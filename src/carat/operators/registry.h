@@ -39,6 +39,8 @@ struct OperatorOptionSet {
   bool virtual_vertex = false;
   std::optional<double> lambda{};           ///< its default
   std::optional<bool> boundary_unknowns{};  ///< its default
+  std::optional<double> theta{};            ///< its default
+  std::optional<double> tau{};              ///< of the moment-exact mass, its default
   bool tensor_coefficient = true;           ///< symmetric tensors in cell_coefficient
 };
 
@@ -74,7 +76,7 @@ struct OperatorEntry {
 using SurfaceOperator = OperatorEntry<PolygonMesh>;
 using VolumeOperator = OperatorEntry<PolyhedralMesh>;
 
-/// "full", "lumped", "voronoi", "default".
+/// "full", "moment-exact", "lumped", "voronoi", "default".
 const char* mass_kind_name(MassKind kind);
 
 /// In the order of operators.def; the first is the default.

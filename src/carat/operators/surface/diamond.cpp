@@ -1,13 +1,18 @@
-// The Diamond Laplacian on surfaces: Bunge, Botsch, Alexa 2021, section 5.
+// The Diamond Laplacian on surfaces: Bunge, Botsch, Alexa 2021, section 5. Stabilised, it has one
+// more row of the gradient a diamond, for the jump between the diamond's halves.
+
+#include "carat/operators/surface/diamond.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 #include "carat/assembly/diamond_assembly.h"
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
 #include "carat/kernels/diamond_2d.h"
+#include "carat/kernels/diamond_split.h"
 #include "carat/operators/common.h"
 #include "carat/operators/registry.h"
 #include "carat/operators/surface/incidence.h"
@@ -21,12 +26,16 @@ struct Sides {
   Index left, right;
 };
 
+/// \tparam Term  DiamondTerm as in the paper, GeneralDiamondTerm with jumps or a moment-exact mass
+template <class Term>
 class DiamondAssembly final : public Assembly {
  public:
-  DiamondAssembly(const PolygonMesh& mesh, const DiscretizationOptions& options);
+  DiamondAssembly(const char* name, const PolygonMesh& mesh, const DiscretizationOptions& options);
   void update(const Points& points) override;
 
  private:
+  static constexpr bool kGeneral = std::is_same_v<Term, GeneralDiamondTerm>;
+
   // Symbolic.
   void find_diamonds();
   void make_gradient_pattern();
@@ -34,6 +43,8 @@ class DiamondAssembly final : public Assembly {
   // Numeric.
   void order_nonmanifold_faces(const Points& points);
   void compute_terms(const Points& points);
+  void set_term(Term& term, const Diamond2d& value, double scale, double area,
+                const Points& points) const;
   void assemble_gradient(const Points& points);
   void collect_frames(const Points& points);
   void report();
@@ -44,7 +55,7 @@ class DiamondAssembly final : public Assembly {
   }
   Index n_diamonds() const { return static_cast<Index>(terms_.size()); }
   Index edge_of(Index diamond) const {
-    const DiamondTerm& term = terms_[diamond];
+    const Term& term = terms_[diamond];
     return mesh_.edges().of_corner[term.left >= 0 ? term.left : term.right];
   }
   /// Face edges of more than two faces: each face is in two diamonds, so each counts half.
@@ -55,26 +66,36 @@ class DiamondAssembly final : public Assembly {
     if (mesh_.faces().indices[corner] != v1) t.foot = 1 - t.foot;
     return t;
   }
-  Diamond2d diamond(const DiamondTerm& term, const Points& points) const {
+  Diamond2d diamond(const Term& term, const Points& points) const {
     const double length2 = (points.row(term.v2) - points.row(term.v1)).squaredNorm();
     return diamond_2d(length2, triangle(term.left, term.v1), triangle(term.right, term.v1),
                       options_.eps_rel);
   }
+  DiamondCrossing<2> crossing(const Term& term, const Points& points) const {
+    const double length2 = (points.row(term.v2) - points.row(term.v1)).squaredNorm();
+    return diamond_crossing(length2, triangle(term.left, term.v1), triangle(term.right, term.v1),
+                            options_.eps_rel);
+  }
+
   PolygonMesh mesh_;
   DiscretizationOptions options_;
+  double theta_ = options_.theta.value_or(1.0);
+  Index n_rows_ = theta_ < 1 ? 3 : 2;  // of the gradient, a diamond
   bool lumped_ = options_.mass == MassKind::Lumped;
   SurfaceIncidence incidence_;
   FaceRings rings_;
   Array<Index> edge_diamonds_;  // empty: diamond e belongs to edge e
-  Array<DiamondTerm> terms_;
+  Array<Term> terms_;
   VirtualVertices virtuals_;
   DiamondWorkspace workspace_;
   Points face_points_;  // only where frames or a coefficient need them
 };
 
-DiamondAssembly::DiamondAssembly(const PolygonMesh& mesh, const DiscretizationOptions& options)
+template <class Term>
+DiamondAssembly<Term>::DiamondAssembly(const char* name, const PolygonMesh& mesh,
+                                       const DiscretizationOptions& options)
     : mesh_(mesh), options_(options), incidence_(surface_incidence(mesh_)) {
-  result_.name = "diamond";
+  result_.name = name;
   rings_ = face_rings(incidence_, options_.threads);
   DiamondPatterns patterns = diamond_patterns(incidence_, rings_, options_.threads);
   result_.stiffness = std::move(patterns.stiffness);
@@ -84,7 +105,8 @@ DiamondAssembly::DiamondAssembly(const PolygonMesh& mesh, const DiscretizationOp
   if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
 }
 
-void DiamondAssembly::find_diamonds() {
+template <class Term>
+void DiamondAssembly<Term>::find_diamonds() {
   const EdgeTopology& edges = mesh_.edges();
   const Csr& corners = edges.corners;
   bool manifold = true;
@@ -108,13 +130,20 @@ void DiamondAssembly::find_diamonds() {
       Sides sides{around[0], around.size() > 1 ? around[1] : -1};
       if (!runs_along(around[0]) && (around.size() == 1 || runs_along(around[1])))
         std::swap(sides.left, sides.right);
-      for (Index d = first_diamond(e); d < end_diamond(e); ++d)
-        terms_[d] = {0, 0, 0, 0, v1, v2, sides.left, sides.right};
+      for (Index d = first_diamond(e); d < end_diamond(e); ++d) {
+        Term term{};
+        term.v1 = v1;
+        term.v2 = v2;
+        term.left = sides.left;
+        term.right = sides.right;
+        terms_[d] = term;
+      }
     }
   });
 }
 
-void DiamondAssembly::order_nonmanifold_faces(const Points& points) {
+template <class Term>
+void DiamondAssembly<Term>::order_nonmanifold_faces(const Points& points) {
   if (edge_diamonds_.empty()) return;
   const EdgeTopology& edges = mesh_.edges();
   const Points face_points = carat::face_points(mesh_, points, virtuals_.weights);
@@ -142,20 +171,21 @@ void DiamondAssembly::order_nonmanifold_faces(const Points& points) {
       return a.angle != b.angle ? a.angle < b.angle : a.corner < b.corner;
     });
     for (std::size_t k = 0; k < around.size(); ++k) {
-      DiamondTerm& term = terms_[edge_diamonds_[e] + static_cast<Index>(k)];
+      Term& term = terms_[edge_diamonds_[e] + static_cast<Index>(k)];
       term.left = around[k].corner;
       term.right = around[(k + 1) % around.size()].corner;
     }
   }
 }
 
-void DiamondAssembly::compute_terms(const Points& points) {
+template <class Term>
+void DiamondAssembly<Term>::compute_terms(const Points& points) {
   Array<double> coefficient;
   if (options_.coefficient) {
     // The caller's function is not asked to be thread-safe.
     coefficient.resize(terms_.size());
     for (Index d = 0; d < n_diamonds(); ++d) {
-      const DiamondTerm& term = terms_[d];
+      const Term& term = terms_[d];
       const Vec3 x1 = points.row(term.v1).transpose(), x2 = points.row(term.v2).transpose();
       Vec3 moment = Vec3::Zero();
       double weight = 0;
@@ -171,30 +201,78 @@ void DiamondAssembly::compute_terms(const Points& points) {
   }
   parallel_blocks(n_diamonds(), options_.threads, [&](int, Index begin, Index end) {
     for (Index d = begin; d < end; ++d) {
-      DiamondTerm& term = terms_[d];
+      Term& term = terms_[d];
       const Diamond2d value = diamond(term, points);
       const double part = edge_diamonds_.empty() ? 1.0 : share(edge_of(d));
       const double scale = options_.coefficient ? part * coefficient[d] : part;
-      term.alpha = scale * value.alpha;
-      term.beta = scale * value.beta;
-      term.gamma = scale * value.gamma;
-      // The literal quarter of (23) would lose a quarter of every boundary diamond, which has
-      // three vertices.   [BBA21 (23)]
-      const bool inner = term.left >= 0 && term.right >= 0;
-      term.mass_share = part * value.area / (inner ? 4 : 3);
+      set_term(term, value, scale, part * value.area, points);
       result_.sample_measure[d] = part * value.area;
     }
   });
 }
 
-void DiamondAssembly::make_gradient_pattern() {
-  // Row 2d (along the hinge) holds the two ends, row 2d+1 (across) all vertices of the faces.
+template <class Term>
+void DiamondAssembly<Term>::set_term(Term& term, const Diamond2d& value, double scale, double area,
+                                     const Points& points) const {
+  // The literal quarter of (23) would lose a quarter of every boundary diamond, which has three
+  // vertices.   [BBA21 (23)]
+  const bool inner = term.left >= 0 && term.right >= 0;
+  const double share = area / (inner ? 4 : 3);
+  if constexpr (!kGeneral) {
+    term.alpha = scale * value.alpha;
+    term.beta = scale * value.beta;
+    term.gamma = scale * value.gamma;
+    term.mass_share = share;
+  } else {
+    const double alpha = scale * value.alpha, beta = scale * value.beta,
+                 gamma = scale * value.gamma;
+    term.k12 = alpha;
+    term.k1l = term.k2r = -beta;
+    term.k2l = term.k1r = beta;
+    term.klr = gamma;
+    term.mass1 = term.mass2 = term.mass_left = term.mass_right = share;
+    if (!inner) {
+      // u at the midpoint of the hinge is the mean of its ends.
+      const bool left = term.left >= 0;
+      double &to_1 = left ? term.k1l : term.k1r, &to_2 = left ? term.k2l : term.k2r;
+      to_1 += gamma / 2;
+      to_2 += gamma / 2;
+      term.k12 -= gamma / 4;
+      (left ? term.k1r : term.k1l) = (left ? term.k2r : term.k2l) = term.klr = 0;
+      (left ? term.mass_right : term.mass_left) = 0;
+      return;
+    }
+    if (!(value.area > 0)) return;
+    const DiamondCrossing<2> crossing = this->crossing(term, points);
+    const double jump = (1 - theta_) * scale * crossing.stiffness;
+    const double at_1 = jump * crossing.base[0], at_2 = jump * crossing.base[1];
+    term.k12 -= at_1 * crossing.base[1];
+    term.k1l += at_1 * crossing.left;
+    term.k2l += at_2 * crossing.left;
+    term.k1r += at_1 * crossing.right;
+    term.k2r += at_2 * crossing.right;
+    term.klr -= jump * crossing.left * crossing.right;
+    if (options_.mass == MassKind::MomentExact) {
+      const DiamondMass<2> mass = moment_exact_mass(crossing, *options_.tau);
+      term.mass1 = area * mass.base[0];
+      term.mass2 = area * mass.base[1];
+      term.mass_left = area * mass.left;
+      term.mass_right = area * mass.right;
+    }
+  }
+}
+
+template <class Term>
+void DiamondAssembly<Term>::make_gradient_pattern() {
+  // Its first row (along the hinge) holds the two ends, the others (across; jump) all vertices of
+  // the faces.
   const EdgeTopology& edges = mesh_.edges();
-  result_.gradient_dimension = 2;
-  if (std::int64_t{n_diamonds()} * 2 > std::numeric_limits<Index>::max())
+  result_.gradient_dimension = n_rows_;
+  result_.jump_components = n_rows_ - 2;
+  if (std::int64_t{n_diamonds()} * n_rows_ > std::numeric_limits<Index>::max())
     throw InvalidMesh("the gradient of " + std::to_string(n_diamonds()) +
                       " diamonds has more rows than 32 bits can number; split the mesh");
-  Array<Index> row_sizes(2 * terms_.size());
+  Array<Index> row_sizes(static_cast<std::size_t>(n_rows_) * terms_.size());
   const auto collect = [&](Index d, Array<Index>& columns) {
     columns.clear();
     for (const Index corner : edges.corners.row(edge_of(d))) {
@@ -208,70 +286,86 @@ void DiamondAssembly::make_gradient_pattern() {
     Array<Index> columns;
     for (Index d = begin; d < end; ++d) {
       collect(d, columns);
-      row_sizes[2 * d] = 2;
-      row_sizes[2 * d + 1] = static_cast<Index>(columns.size());
+      row_sizes[n_rows_ * d] = 2;
+      for (Index row = n_rows_ * d + 1; row < n_rows_ * (d + 1); ++row)
+        row_sizes[row] = static_cast<Index>(columns.size());
     }
   });
   result_.gradient =
-      allocate_rows(2 * n_diamonds(), mesh_.n_vertices(), row_sizes, "the diamond gradient");
+      allocate_rows(n_rows_ * n_diamonds(), mesh_.n_vertices(), row_sizes, "the diamond gradient");
   Index* const inner = result_.gradient.innerIndexPtr();
   const Index* const outer = result_.gradient.outerIndexPtr();
   parallel_blocks(n_diamonds(), options_.threads, [&](int, Index begin, Index end) {
     Array<Index> columns;
     for (Index d = begin; d < end; ++d) {
-      inner[outer[2 * d]] = terms_[d].v1;
-      inner[outer[2 * d] + 1] = terms_[d].v2;
+      inner[outer[n_rows_ * d]] = terms_[d].v1;
+      inner[outer[n_rows_ * d] + 1] = terms_[d].v2;
       collect(d, columns);
-      std::copy(columns.begin(), columns.end(), inner + outer[2 * d + 1]);
+      for (Index row = n_rows_ * d + 1; row < n_rows_ * (d + 1); ++row)
+        std::copy(columns.begin(), columns.end(), inner + outer[row]);
     }
   });
 }
 
-void DiamondAssembly::assemble_gradient(const Points& points) {
+template <class Term>
+void DiamondAssembly<Term>::assemble_gradient(const Points& points) {
   // G = G^ P, columns of G^ as in (13): along the hinge (u2-u1)/l, across
   // (ul - ur - (u2-u1) shear) / (hl + hr).   [BBA21 (13), (18)]
+  // The jump's row times |D| in its square is the jump's energy.
   const Index* const outer = result_.gradient.outerIndexPtr();
   const Index* const inner = result_.gradient.innerIndexPtr();
   double* const values = result_.gradient.valuePtr();
   parallel_blocks(n_diamonds(), options_.threads, [&](int, Index begin, Index end) {
     for (Index d = begin; d < end; ++d) {
-      const DiamondTerm& term = terms_[d];
-      std::fill(values + outer[2 * d], values + outer[2 * d + 2], 0.0);
+      const Term& term = terms_[d];
+      const Index first_row = n_rows_ * d;
+      std::fill(values + outer[first_row], values + outer[first_row + n_rows_], 0.0);
       const Diamond2d value = diamond(term, points);
       if (!(value.area > 0)) continue;
       const double length = (points.row(term.v2) - points.row(term.v1)).norm();
-      values[outer[2 * d]] = -1 / length;
-      values[outer[2 * d] + 1] = 1 / length;
-      const Index* const first = inner + outer[2 * d + 1];
-      const Index* const last = inner + outer[2 * d + 2];
-      const auto add = [&](Index v, double x) {
-        values[std::lower_bound(first, last, v) - inner] += x;
+      values[outer[first_row]] = -1 / length;
+      values[outer[first_row] + 1] = 1 / length;
+      const auto fill_row = [&](Index row, double at_1, double at_2, double at_left,
+                                double at_right) {
+        const Index* const first = inner + outer[row];
+        const Index* const last = inner + outer[row + 1];
+        const auto add = [&](Index v, double x) {
+          values[std::lower_bound(first, last, v) - inner] += x;
+        };
+        add(term.v1, at_1);
+        add(term.v2, at_2);
+        const auto add_side = [&](Index corner, double factor) {
+          if (corner < 0) {
+            add(term.v1, factor / 2);
+            add(term.v2, factor / 2);
+            return;
+          }
+          const Index f = mesh_.corner_faces()[corner];
+          for (Index c = mesh_.faces().begin(f); c < mesh_.faces().end(f); ++c)
+            add(mesh_.faces().indices[c], factor * virtuals_.weights[c]);
+        };
+        add_side(term.left, at_left);
+        add_side(term.right, at_right);
       };
       const double over_height = length / (2 * value.area);
-      add(term.v1, value.shear * over_height);
-      add(term.v2, -value.shear * over_height);
-      const auto add_side = [&](Index corner, double factor) {
-        if (corner < 0) {
-          add(term.v1, factor / 2);
-          add(term.v2, factor / 2);
-          return;
-        }
-        const Index f = mesh_.corner_faces()[corner];
-        for (Index c = mesh_.faces().begin(f); c < mesh_.faces().end(f); ++c)
-          add(mesh_.faces().indices[c], factor * virtuals_.weights[c]);
-      };
-      add_side(term.left, over_height);
-      add_side(term.right, -over_height);
+      fill_row(first_row + 1, value.shear * over_height, -value.shear * over_height, over_height,
+               -over_height);
+      if (n_rows_ == 2 || term.left < 0 || term.right < 0) continue;
+      const DiamondCrossing<2> crossing = this->crossing(term, points);
+      const double scale = std::sqrt((1 - theta_) * crossing.stiffness / value.area);
+      fill_row(first_row + 2, -scale * crossing.base[0], -scale * crossing.base[1],
+               scale * crossing.left, scale * crossing.right);
     }
   });
 }
 
-void DiamondAssembly::collect_frames(const Points& points) {
+template <class Term>
+void DiamondAssembly<Term>::collect_frames(const Points& points) {
   result_.frames = {};
   result_.frames.parts.reserve(2 * terms_.size());
   result_.frames.axes.reserve(2 * terms_.size());
   for (Index d = 0; d < n_diamonds(); ++d) {
-    const DiamondTerm& term = terms_[d];
+    const Term& term = terms_[d];
     if (!(result_.sample_measure[d] > 0)) continue;
     const Vec3 x1 = points.row(term.v1).transpose();
     const Vec3 u = (Vec3(points.row(term.v2).transpose()) - x1).normalized();  // (10)
@@ -292,7 +386,8 @@ void DiamondAssembly::collect_frames(const Points& points) {
   }
 }
 
-void DiamondAssembly::report() {
+template <class Term>
+void DiamondAssembly<Term>::report() {
   result_.diagnostics = {};
   report_unreferenced(mesh_, result_.diagnostics);
   report_virtual_vertices(virtuals_, result_.diagnostics);
@@ -308,7 +403,8 @@ void DiamondAssembly::report() {
       result_.diagnostics);
 }
 
-void DiamondAssembly::update(const Points& points) {
+template <class Term>
+void DiamondAssembly<Term>::update(const Points& points) {
   update_virtual_vertices(mesh_, points, options_.virtual_vertex, options_.threads, virtuals_);
   if (options_.coefficient || options_.parts == DiscretizationParts::Frames)
     face_points_ = face_points(mesh_, points, virtuals_.weights);
@@ -324,12 +420,21 @@ void DiamondAssembly::update(const Points& points) {
 
 }  // namespace
 
+std::unique_ptr<Assembly> make_diamond(const char* name, const PolygonMesh& mesh,
+                                       const DiscretizationOptions& options) {
+  if (options.theta.value_or(1.0) < 1 || options.mass == MassKind::MomentExact)
+    return std::make_unique<DiamondAssembly<GeneralDiamondTerm>>(name, mesh, options);
+  return std::make_unique<DiamondAssembly<DiamondTerm>>(name, mesh, options);
+}
+
 extern const SurfaceOperator diamond_surface_operator = {
     "diamond",
     "Diamond Laplacian: gradients on the diamonds of edges",
     "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021",
     {},
-    {.virtual_vertex = true},
+    {.masses = {MassKind::Full, MassKind::MomentExact, MassKind::Lumped},
+     .virtual_vertex = true,
+     .tau = 0.75},
     {"S = G^T M_d G with one gradient per edge: linear on the diamond of the edge's two ends and "
      "the "
      "virtual vertices of its two faces, the two halves unfolded into one plane; virtual vertices "
@@ -343,8 +448,8 @@ extern const SurfaceOperator diamond_surface_operator = {
      "are longer than with bunge, so factorisations take longer.",
      "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021, "
      "equations (6) to (23)"},
-    [](const PolygonMesh& mesh, const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
-      return std::make_unique<DiamondAssembly>(mesh, options);
+    [](const PolygonMesh& mesh, const DiscretizationOptions& options) {
+      return make_diamond("diamond", mesh, options);
     }};
 
 }  // namespace carat

@@ -1,4 +1,7 @@
-// The Diamond Laplacian in volumes: Bunge, Botsch, Alexa 2021, section 6.
+// The Diamond Laplacian in volumes: Bunge, Botsch, Alexa 2021, section 6. Stabilised, it has one
+// more row of the gradient a diamond, for the jump between the diamond's halves.
+
+#include "carat/operators/volume/diamond.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,6 +13,7 @@
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
 #include "carat/kernels/diamond_3d.h"
+#include "carat/kernels/diamond_split.h"
 #include "carat/kernels/tet_diamond.h"
 #include "carat/kernels/virtual_cell.h"
 #include "carat/operators/common.h"
@@ -22,7 +26,8 @@ namespace {
 
 class VolumeDiamondAssembly final : public Assembly {
  public:
-  VolumeDiamondAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options);
+  VolumeDiamondAssembly(const char* name, const PolyhedralMesh& mesh,
+                        const DiscretizationOptions& options);
   void update(const Points& points) override;
 
  private:
@@ -39,6 +44,9 @@ class VolumeDiamondAssembly final : public Assembly {
   bool compute_tets();
   TetFaceDiamonds tet_face(Index f, Index own, Index across, bool above) const;
   void compute_faces();
+  void add_split(const Diamond3d& diamond, const DiamondCrossing<3>& crossing, double gamma,
+                 VolumeDiamondWorkspace::Corner& a, VolumeDiamondWorkspace::Corner& b,
+                 VolumeDiamondWorkspace::Face& face) const;
   template <class Conductivity>
   void compute_face(Index f, const Conductivity& conductivity);
   void assemble_gradient();
@@ -59,26 +67,33 @@ class VolumeDiamondAssembly final : public Assembly {
   }
   Index n_diamonds() const { return mesh_.face_mesh().n_corners(); }
 
+  /// As in the paper.
+  bool plain() const { return theta_ == 1 && !moment_exact_; }
+
   PolyhedralMesh mesh_;
   DiscretizationOptions options_;
+  double theta_ = options_.theta.value_or(1.0);
+  bool moment_exact_ = options_.mass == MassKind::MomentExact;
+  Index n_rows_ = theta_ < 1 ? 4 : 3;  // of the gradient, a diamond
   bool lumped_ = options_.mass == MassKind::Lumped;
   VolumeIncidence incidence_;
   CellRings rings_;
   VirtualCells virtuals_;
   VolumeDiamondWorkspace workspace_;
-  bool tets_;  // all cells are tetrahedra and K = 1: the closed form serves
+  bool tets_;  // all cells are tetrahedra, K = 1, nothing beyond the paper: the closed form serves
   TetTopology tet_topology_;
   TetDiamondWorkspace tet_workspace_;
   Vec3 origin_ = Vec3::Zero();
   Points points_;  // relative to the origin, so that no accuracy is lost far from it
 };
 
-VolumeDiamondAssembly::VolumeDiamondAssembly(const PolyhedralMesh& mesh,
+VolumeDiamondAssembly::VolumeDiamondAssembly(const char* name, const PolyhedralMesh& mesh,
                                              const DiscretizationOptions& options)
     : mesh_(mesh), options_(options), incidence_(volume_incidence(mesh_)) {
   check_cell_coefficient(options_, mesh_.n_cells());
-  result_.name = "diamond";
-  tets_ = !options_.coefficient && options_.cell_coefficient.size() == 0 && mesh_.n_cells() > 0;
+  result_.name = name;
+  tets_ = plain() && !options_.coefficient && options_.cell_coefficient.size() == 0 &&
+          mesh_.n_cells() > 0;
   for (Index c = 0; c < mesh_.n_cells() && tets_; ++c)
     tets_ = mesh_.cells().size(c) == 4 && mesh_.cell_vertices().size(c) == 4;
   VolumeDiamondPatterns patterns;
@@ -120,14 +135,51 @@ struct DiamondConductivity {
   }
 };
 
+/// The jump between the halves of a diamond, and masses that its halves tell apart.
+/// \param gamma  |D| times the square of the gradient's derivative by u_above - u_below
+void VolumeDiamondAssembly::add_split(const Diamond3d& diamond, const DiamondCrossing<3>& crossing,
+                                      double gamma, VolumeDiamondWorkspace::Corner& a,
+                                      VolumeDiamondWorkspace::Corner& b,
+                                      VolumeDiamondWorkspace::Face& face) const {
+  // Stiffness (left u_l + right u_r - sum of base u)^2; gamma brings K across the base.
+  const auto& [at_a, at_b, at_f] = crossing.base;
+  const double jump =
+      crossing.stiffness > 0
+          ? (1 - theta_) * gamma / (crossing.left_fraction * (1 - crossing.left_fraction))
+          : 0.0;
+  a.side -= jump * at_a * at_b;
+  a.spoke -= jump * at_a * at_f;
+  b.spoke -= jump * at_b * at_f;
+  a.diagonal += jump * at_a * at_a;
+  b.diagonal += jump * at_b * at_b;
+  face.spokes += jump * at_f * at_f;
+  a.below -= jump * crossing.left * at_a;
+  b.below -= jump * crossing.left * at_b;
+  face.below -= jump * crossing.left * at_f;
+  a.above -= jump * crossing.right * at_a;
+  b.above -= jump * crossing.right * at_b;
+  face.above -= jump * crossing.right * at_f;
+  face.gamma_below += jump * crossing.left * crossing.left;
+  face.gamma_above += jump * crossing.right * crossing.right;
+  face.gamma_across -= jump * crossing.left * crossing.right;
+  const double volume = diamond.volume();
+  DiamondMass<3> mass{{1.0 / 6, 1.0 / 6, 1.0 / 6}, 0.25, 0.25};  // [BBA21 (33)]
+  if (moment_exact_) mass = moment_exact_mass(crossing, *options_.tau);
+  a.mass += volume * mass.base[0];
+  b.mass += volume * mass.base[1];
+  face.mass += volume * mass.base[2];
+  face.mass_below += volume * mass.left;
+  face.mass_above += volume * mass.right;
+}
+
 template <class Conductivity>
 void VolumeDiamondAssembly::compute_face(Index f, const Conductivity& conductivity) {
   const Csr& faces = mesh_.face_mesh().faces();
   const Index first = faces.begin(f), last = faces.end(f);
   const FaceCells cells = mesh_.face_cells()[f];
   VolumeDiamondWorkspace::Corner* const corners = workspace_.corners.data();
-  VolumeDiamondWorkspace::Face face{0, 0, 0, 0, 0};
-  std::fill(corners + first, corners + last, VolumeDiamondWorkspace::Corner{0, 0, 0, 0, 0});
+  VolumeDiamondWorkspace::Face face{};
+  std::fill(corners + first, corners + last, VolumeDiamondWorkspace::Corner{});
   if (cells.below >= 0 || cells.above >= 0) {
     const FaceTips tip = tips(f);
     const bool inner = cells.below >= 0 && cells.above >= 0;
@@ -153,25 +205,40 @@ void VolumeDiamondAssembly::compute_face(Index f, const Conductivity& conductivi
       b.spoke += spoke_b;
       a.diagonal += side + spoke_a;
       b.diagonal += side + spoke_b;
-      a.alpha -= sw + tw;
-      b.alpha += sw;
-      face.alpha += tw;
+      const double gamma = scale * diamond.w.dot(kw);
+      a.above -= sw + tw;
+      a.below += sw + tw;
+      b.above += sw;
+      b.below -= sw;
+      face.above += tw;
+      face.below -= tw;
       face.spokes += tt;
-      face.gamma += scale * diamond.w.dot(kw);
-      // Boundary diamonds have four vertices, not five.   [BBA21 (33)]
-      const double share = inner ? volume / 6 : volume / 4;
-      a.mass += share;
-      b.mass += share;
-      face.mass += share;
-      face.tip_mass += volume / 4;
+      face.gamma_below += gamma;
+      face.gamma_above += gamma;
+      face.gamma_across += gamma;
+      if (!inner || plain()) {
+        // Boundary diamonds have four vertices, not five.   [BBA21 (33)]
+        const double share = inner ? volume / 6 : volume / 4;
+        a.mass += share;
+        b.mass += share;
+        face.mass += share;
+        face.mass_below += volume / 4;
+        face.mass_above += volume / 4;
+      } else {
+        add_split(diamond,
+                  diamond_crossing(diamond, x1, x2, tip.face_point, tip.below, tip.above,
+                                   options_.eps_rel),
+                  gamma, a, b, face);
+      }
     }
     if (!inner) {
       // u at the missing tip is that of the face point: fold its part into A and a.
-      const double sign = cells.above < 0 ? 1.0 : -1.0;
+      const bool no_above = cells.above < 0;
       for (Index corner = first; corner < last; ++corner)
-        corners[corner].spoke -= sign * corners[corner].alpha;
-      face.spokes += 2 * sign * face.alpha + face.gamma;
-      face.alpha += sign * face.gamma;
+        corners[corner].spoke -= no_above ? corners[corner].above : corners[corner].below;
+      const double gamma = face.gamma_across;
+      face.spokes += 2 * (no_above ? face.above : face.below) + gamma;
+      (no_above ? face.below : face.above) -= gamma;
     }
   } else {
     std::fill(result_.sample_measure.begin() + first, result_.sample_measure.begin() + last, 0.0);
@@ -275,30 +342,32 @@ void VolumeDiamondAssembly::collect_columns(Index f, Array<Index>& columns) cons
 }
 
 void VolumeDiamondAssembly::make_gradient_pattern() {
-  result_.gradient_dimension = 3;
+  result_.gradient_dimension = n_rows_;
+  result_.jump_components = n_rows_ - 3;
   const Csr& faces = mesh_.face_mesh().faces();
-  if (std::int64_t{n_diamonds()} * 3 > std::numeric_limits<Index>::max())
+  if (std::int64_t{n_diamonds()} * n_rows_ > std::numeric_limits<Index>::max())
     throw InvalidMesh("the gradient of " + std::to_string(n_diamonds()) +
                       " diamonds has more rows than 32 bits can number; split the mesh");
-  Array<Index> row_sizes(3 * static_cast<std::size_t>(n_diamonds()));
+  Array<Index> row_sizes(static_cast<std::size_t>(n_rows_) *
+                         static_cast<std::size_t>(n_diamonds()));
   parallel_blocks(mesh_.n_faces(), options_.threads, [&](int, Index begin, Index end) {
     Array<Index> columns;
     for (Index f = begin; f < end; ++f) {
       collect_columns(f, columns);
-      std::fill(row_sizes.begin() + 3 * std::ptrdiff_t{faces.begin(f)},
-                row_sizes.begin() + 3 * std::ptrdiff_t{faces.end(f)},
+      std::fill(row_sizes.begin() + std::ptrdiff_t{n_rows_} * faces.begin(f),
+                row_sizes.begin() + std::ptrdiff_t{n_rows_} * faces.end(f),
                 static_cast<Index>(columns.size()));
     }
   });
   result_.gradient =
-      allocate_rows(3 * n_diamonds(), mesh_.n_vertices(), row_sizes, "the diamond gradient");
+      allocate_rows(n_rows_ * n_diamonds(), mesh_.n_vertices(), row_sizes, "the diamond gradient");
   Index* const inner = result_.gradient.innerIndexPtr();
   const Index* const outer = result_.gradient.outerIndexPtr();
   parallel_blocks(mesh_.n_faces(), options_.threads, [&](int, Index begin, Index end) {
     Array<Index> columns;
     for (Index f = begin; f < end; ++f) {
       collect_columns(f, columns);
-      for (Index row = 3 * faces.begin(f); row < 3 * faces.end(f); ++row)
+      for (Index row = n_rows_ * faces.begin(f); row < n_rows_ * faces.end(f); ++row)
         std::copy(columns.begin(), columns.end(), inner + outer[row]);
     }
   });
@@ -313,51 +382,61 @@ void VolumeDiamondAssembly::assemble_gradient() {
   double* const values = result_.gradient.valuePtr();
   parallel_blocks(mesh_.n_faces(), options_.threads, [&](int, Index begin, Index end) {
     // Of the columns of a face: the weights of u_f and u_above - u_below.
-    Vector of_face, of_tips;
+    Vector of_face, of_below, of_above;
     Array<Index> place;
     for (Index f = begin; f < end; ++f) {
       if (!has_cells(f)) continue;
       const Index first = faces.begin(f), last = faces.end(f);
-      const Index* const columns = inner + outer[3 * first];
-      const Index n = outer[3 * first + 1] - outer[3 * first];
+      const Index* const columns = inner + outer[n_rows_ * first];
+      const Index n = outer[n_rows_ * first + 1] - outer[n_rows_ * first];
       const auto find = [&](Index v) {
         return static_cast<Index>(std::lower_bound(columns, columns + n, v) - columns);
       };
       of_face.setZero(n);
-      of_tips.setZero(n);
       place.clear();
       for (Index k = first; k < last; ++k) {
         place.push_back(find(faces.indices[k]));
         of_face[place.back()] += virtuals_.faces.weights[k];
       }
-      const auto add_tip = [&](Index c, double sign) {
+      const auto set_tip = [&](Index c, Vector& of_tip) {
         if (c < 0) {
-          of_tips += sign * of_face;
+          of_tip = of_face;
           return;
         }
+        of_tip.setZero(n);
         for (Index k = cells.begin(c); k < cells.end(c); ++k)
-          of_tips[find(cells.indices[k])] += sign * virtuals_.cell_weights[k];
+          of_tip[find(cells.indices[k])] += virtuals_.cell_weights[k];
       };
-      add_tip(mesh_.face_cells()[f].above, 1);
-      add_tip(mesh_.face_cells()[f].below, -1);
+      const FaceCells sides = mesh_.face_cells()[f];
+      set_tip(sides.above, of_above);
+      set_tip(sides.below, of_below);
+      const bool inner_face = sides.above >= 0 && sides.below >= 0;
       const FaceTips tip = tips(f);
       for (Index corner = first; corner < last; ++corner) {
-        double* const rows = values + outer[3 * corner];
+        double* const rows = values + outer[n_rows_ * corner];
         const Index next = corner + 1 == last ? first : corner + 1;
+        const Vec3 x1 = position(faces.indices[corner]), x2 = position(faces.indices[next]);
         const Diamond3d diamond =
-            diamond_3d(position(faces.indices[corner]), position(faces.indices[next]),
-                       tip.face_point, tip.below, tip.above, options_.eps_rel);
-        if (!(diamond.determinant > 0)) {
-          std::fill(rows, rows + 3 * n, 0.0);
-          continue;
-        }
-        const Eigen::Matrix<double, 3, 5> g = diamond_gradient(diamond);
-        for (Index d = 0; d < 3; ++d) {
+            diamond_3d(x1, x2, tip.face_point, tip.below, tip.above, options_.eps_rel);
+        std::fill(rows, rows + n_rows_ * n, 0.0);
+        if (!(diamond.determinant > 0)) continue;
+        const auto fill_row = [&](Index row, double at_1, double at_2, double at_f, double at_below,
+                                  double at_above) {
+          double* const out = rows + row * n;
           for (Index k = 0; k < n; ++k)
-            rows[d * n + k] = g(d, 2) * of_face[k] + g(d, 4) * of_tips[k];
-          rows[d * n + place[corner - first]] += g(d, 0);
-          rows[d * n + place[next - first]] += g(d, 1);
-        }
+            out[k] = at_f * of_face[k] + at_below * of_below[k] + at_above * of_above[k];
+          out[place[corner - first]] += at_1;
+          out[place[next - first]] += at_2;
+        };
+        const Eigen::Matrix<double, 3, 5> g = diamond_gradient(diamond);
+        for (Index d = 0; d < 3; ++d) fill_row(d, g(d, 0), g(d, 1), g(d, 2), g(d, 3), g(d, 4));
+        if (n_rows_ == 3 || !inner_face) continue;
+        // Times |D| in its square it is the jump's energy.
+        const DiamondCrossing<3> crossing = diamond_crossing(
+            diamond, x1, x2, tip.face_point, tip.below, tip.above, options_.eps_rel);
+        const double scale = std::sqrt((1 - theta_) * crossing.stiffness / diamond.volume());
+        fill_row(3, -scale * crossing.base[0], -scale * crossing.base[1], -scale * crossing.base[2],
+                 scale * crossing.left, scale * crossing.right);
       }
     }
   });
@@ -433,12 +512,19 @@ void VolumeDiamondAssembly::update(const Points& points) {
 
 }  // namespace
 
+std::unique_ptr<Assembly> make_diamond(const char* name, const PolyhedralMesh& mesh,
+                                       const DiscretizationOptions& options) {
+  return std::make_unique<VolumeDiamondAssembly>(name, mesh, options);
+}
+
 extern const VolumeOperator diamond_volume_operator = {
     "diamond",
     "Diamond Laplacian: gradients on the minimal diamonds of faces",
     "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021",
     {},
-    {.virtual_vertex = true},
+    {.masses = {MassKind::Full, MassKind::MomentExact, MassKind::Lumped},
+     .virtual_vertex = true,
+     .tau = 1.0},
     {"S = G^T M_d G with one gradient for every edge of every face: linear on the edge, the face's "
      "virtual vertex and those of the two cells, which are affine combinations of their vertices. "
      "Mass "
@@ -449,9 +535,8 @@ extern const VolumeOperator diamond_volume_operator = {
      "direct solvers take longer than with bunge.",
      "Bunge, Botsch, Alexa: The Diamond Laplace for Polygonal and Polyhedral Meshes, 2021, "
      "equations (24) to (33)"},
-    [](const PolyhedralMesh& mesh,
-       const DiscretizationOptions& options) -> std::unique_ptr<Assembly> {
-      return std::make_unique<VolumeDiamondAssembly>(mesh, options);
+    [](const PolyhedralMesh& mesh, const DiscretizationOptions& options) {
+      return make_diamond("diamond", mesh, options);
     }};
 
 }  // namespace carat
