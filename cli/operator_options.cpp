@@ -95,6 +95,24 @@ std::string join(const std::vector<std::string>& words) {
   return list;
 }
 
+/// The same in lines that fit into a help text.
+std::string join_in_lines(const std::vector<std::string>& words) {
+  constexpr std::size_t kWidth = 56;
+  std::string list;
+  std::size_t line_start = 0;
+  for (const std::string& word : words) {
+    if (!list.empty()) list += ',';
+    if (list.size() + word.size() - line_start > kWidth) {
+      list += '\n';
+      line_start = list.size();
+    } else if (!list.empty()) {
+      list += ' ';
+    }
+    list += word;
+  }
+  return list;
+}
+
 /// The operator of that name on meshes of this kind.
 template <class Mesh>
 const OperatorEntry<Mesh>& choose_operator(const Mesh& mesh, const std::string& name) {
@@ -169,10 +187,10 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
 void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surfaces_only) {
   std::vector<std::string> choices = names(surface_operators());
   std::string description =
-      "The discrete operator; see carat list operators.\nSurfaces: " + join(choices);
+      "The discrete operator; see carat list operators.\nSurfaces:\n" + join_in_lines(choices);
   if (!surfaces_only) {
     const std::vector<std::string> of_volumes = names(volume_operators());
-    description += ";\nvolumes: " + join(of_volumes);
+    description += ";\nvolumes:\n" + join_in_lines(of_volumes);
     for (const std::string& name : of_volumes)
       if (std::find(choices.begin(), choices.end(), name) == choices.end()) choices.push_back(name);
   }

@@ -42,7 +42,7 @@ class Help(CaratTest):
             text = self.succeed(command, "--help")
             self.assertIn("NAME=" + choices[0], text)
             for name in choices:
-                self.assertRegex(text, rf"(Surfaces|volumes): .*\b{name}\b")
+                self.assertRegex(text, rf"(Surfaces|volumes):\s[\w\s,]*\b{name}\b")
 
 
 class List(CaratTest):

