@@ -17,7 +17,7 @@ struct Options {
   std::string input, output;
   std::vector<Index> sources;
   double t_coef = 1;
-  std::string edge_length = "max";
+  std::string edge_length = "max", directions = "samples";
   OperatorOptions discretization;
 };
 
@@ -60,14 +60,17 @@ template <class Data>
 void measure(Session& session, const Options& options, Data& data) {
   check_output_kind(options.output, words(data.mesh));
   check_sources(options.sources, data.mesh.n_vertices());
-  const bool writes = !options.output.empty();
-  Discretization discretization =
-      discretize(session, data.mesh, options.discretization,
-                 writes ? DiscretizationParts::Frames : DiscretizationParts::Gradient);
+  const bool writes = !options.output.empty(), of_elements = options.directions == "elements";
+  Discretization discretization = discretize(
+      session, data.mesh, options.discretization,
+      writes || of_elements ? DiscretizationParts::Frames : DiscretizationParts::Gradient);
   const TimeStepLength length =
       options.edge_length == "mean" ? TimeStepLength::MeanEdge : TimeStepLength::MaxEdge;
+  const HeatDirections directions =
+      of_elements ? HeatDirections::Elements : HeatDirections::Samples;
   const HeatGeodesics geodesics = session.phase("factor", [&] {
-    return HeatGeodesics(data.mesh, std::move(discretization), {options.t_coef, length});
+    return HeatGeodesics(data.mesh, std::move(discretization),
+                         {options.t_coef, length, directions});
   });
   std::vector<GeodesicSource> sources;
   for (const Index v : options.sources) sources.push_back({v});
@@ -78,6 +81,7 @@ void measure(Session& session, const Options& options, Data& data) {
   report["options"]["sources"] = options.sources;
   report["options"]["t_coef"] = options.t_coef;
   report["options"]["edge_length"] = options.edge_length;
+  report["options"]["directions"] = options.directions;
   report["time_step"] = geodesics.time_step();
   report["solver"] = {{"method", geodesics.poisson_info().method},
                       {"ordering", geodesics.poisson_info().ordering},
@@ -110,6 +114,12 @@ std::function<void(Session&)> declare(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--edge-length", options->edge_length, "The h of the time step")
       ->check(CLI::IsMember({"max", "mean"}))
+      ->capture_default_str();
+  app.add_option("--directions", options->directions,
+                 "Bring the heat's gradient to unit length in every sample\n"
+                 "(diamond), or its mean in every face or cell: smoother\n"
+                 "on concave faces, with stabilized_diamond")
+      ->check(CLI::IsMember({"samples", "elements"}))
       ->capture_default_str();
   app.add_option("-o,--output", options->output,
                  "File for the mesh with the fields distance (vertices)\n"

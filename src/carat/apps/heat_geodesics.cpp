@@ -29,7 +29,7 @@ double step_length(const PolygonMesh& mesh, TimeStepLength kind) {
 
 HeatGeodesics::HeatGeodesics(const PolygonMesh& mesh, Discretization discretization,
                              const HeatGeodesicsOptions& options)
-    : discretization_(std::move(discretization)) {
+    : discretization_(std::move(discretization)), directions_(options.directions) {
   if (!(options.t_coef > 0) || !std::isfinite(options.t_coef))
     throw InvalidOption("t_coef is " + std::to_string(options.t_coef) +
                         "; it must be a positive number");
@@ -40,6 +40,10 @@ HeatGeodesics::HeatGeodesics(const PolygonMesh& mesh, Discretization discretizat
   if (discretization_.gradient_dimension == 0)
     throw InvalidOption("heat geodesics need a gradient: the operator " + discretization_.name +
                         " defines none, or it was not asked for (DiscretizationParts::Gradient)");
+  if (directions_ == HeatDirections::Elements)
+    if (const std::string reason = discretization_.lacks_element_directions(); !reason.empty())
+      throw InvalidOption("the operator " + discretization_.name +
+                          " gives no directions of elements: " + reason);
   const double h = step_length(mesh, options.length);
   time_step_ = options.t_coef * h * h;
   const SparseMatrix heat = discretization_.mass + time_step_ * discretization_.stiffness;
@@ -86,6 +90,9 @@ GeodesicDistance HeatGeodesics::distance(const std::vector<GeodesicSource>& sour
   GeodesicDistance result;
   std::vector<bool> reached(static_cast<std::size_t>(poisson_->n_components()), false);
   for (const GeodesicSource& source : sources) reached[component[source.vertex]] = true;
+  Vector of_elements;
+  if (directions_ == HeatDirections::Elements)
+    of_elements = discretization_.element_directions(directions);
   const std::vector<bool> vanished = discretization_.normalise_samples(directions);
   for (Index s = 0; s < discretization_.n_samples(); ++s) {
     if (!vanished[static_cast<std::size_t>(s)] || !(discretization_.sample_measure[s] > 0))
@@ -94,6 +101,7 @@ GeodesicDistance HeatGeodesics::distance(const std::vector<GeodesicSource>& sour
     if (entry && component[entry.col()] >= 0 && reached[component[entry.col()]])
       ++result.unresolved_samples;
   }
+  if (directions_ == HeatDirections::Elements) directions = of_elements;
   result.values = poisson_->solve(discretization_.apply_divergence(directions));
 
   std::vector<double> shift(reached.size(), 0), count(reached.size(), 0);

@@ -12,9 +12,16 @@ namespace carat {
 /// The length h in the time step t = t_coef * h^2.
 enum class TimeStepLength { MaxEdge, MeanEdge };
 
+/// Where the gradient of the heat is brought to unit length.
+enum class HeatDirections {
+  Samples,   ///< in every sample
+  Elements,  ///< in every face or cell, where samples are averaged first; not for all operators
+};
+
 struct HeatGeodesicsOptions {
   double t_coef = 1;
   TimeStepLength length = TimeStepLength::MaxEdge;
+  HeatDirections directions = HeatDirections::Samples;
 };
 
 /// A point to measure from.
@@ -38,8 +45,9 @@ struct GeodesicDistance {
 /// constants of each component.
 class HeatGeodesics {
  public:
-  /// \param discretization  with its gradient; K = 1
-  /// \throws InvalidOption  t_coef not positive, no gradient, sizes that do not fit
+  /// \param discretization  with its gradient, for directions of elements also its frames; K = 1
+  /// \throws InvalidOption  t_coef not positive, no gradient, sizes that do not fit, directions
+  ///                        of elements: see Discretization::lacks_element_directions()
   /// \throws SolverFailure  a system is not positive definite
   HeatGeodesics(const PolygonMesh& mesh, Discretization discretization,
                 const HeatGeodesicsOptions& options = {});
@@ -58,6 +66,7 @@ class HeatGeodesics {
  private:
   Discretization discretization_;
   double time_step_ = 0;
+  HeatDirections directions_;
   Vector heat_diagonal_;
   std::unique_ptr<SpdSolver> heat_;
   std::unique_ptr<SemidefiniteSolver> poisson_;

@@ -1,5 +1,7 @@
 #include "carat/operators/discretization.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -107,6 +109,57 @@ std::vector<bool> Discretization::normalise_samples(Vector& vectors) const {
 Points Discretization::element_vectors(const Vector& vectors, Index n_elements) const {
   return average_parts(*this, vectors, n_elements,
                        [](const GradientFrames::Part& part, auto&& add) { add(part.element); });
+}
+
+std::string Discretization::lacks_element_directions() const {
+  if (gradient_dimension == 0 || is_one_form()) return "its gradients are no vectors";
+  if (frames.parts.empty() && n_samples() > 0) return "the frames were not computed";
+  if (jump_components > 0 && !frames.axes.empty()) return "";
+  for (std::size_t k = 1; k < frames.parts.size(); ++k)
+    if (frames.parts[k].sample == frames.parts[k - 1].sample)
+      return "its samples span several elements, and what jumps between these is not known";
+  return "";
+}
+
+Vector Discretization::element_directions(const Vector& vectors) const {
+  require_gradient(*this, vectors.size());
+  if (const std::string reason = lacks_element_directions(); !reason.empty())
+    throw InvalidOption("the operator " + name + " gives no directions of elements: " + reason);
+  Index n_elements = 0;
+  for (const GradientFrames::Part& part : frames.parts)
+    n_elements = std::max(n_elements, part.element + 1);
+  // Scaled first: the squares of small values would vanish in the means' lengths.
+  const double scale = vectors.size() > 0 ? vectors.lpNorm<Eigen::Infinity>() : 0.0;
+  Points field = element_vectors(scale > 0 ? Vector(vectors / scale) : vectors, n_elements);
+  for (Index f = 0; f < n_elements; ++f) {
+    const double largest = field.row(f).lpNorm<Eigen::Infinity>();
+    if (largest > 0) field.row(f) = (field.row(f) / largest).eval().normalized();
+  }
+  Vector result = Vector::Zero(vectors.size());
+  const Index length = gradient_dimension - jump_components;
+  for (std::size_t k = 0; k < frames.parts.size(); ++k) {
+    const GradientFrames::Part& part = frames.parts[k];
+    const Eigen::Index row = first_row(part.sample);
+    const double share = part.measure / sample_measure[part.sample];
+    const Vec3 x = field.row(part.element).transpose();
+    if (frames.axes.empty())
+      result.segment(row, length) += share * x;
+    else
+      result.segment(row, length) += share * (frames.axes[k].transpose() * x);
+  }
+  if (jump_components == 0) return result;
+  // Parts of one sample follow each other, the left one first; across is the second axis.
+  for (std::size_t k = 1; k < frames.parts.size(); ++k) {
+    const GradientFrames::Part &left = frames.parts[k - 1], &right = frames.parts[k];
+    if (left.sample != right.sample) continue;
+    const auto across = [&](std::size_t part) {
+      return frames.axes[part].col(1).dot(field.row(frames.parts[part].element).transpose());
+    };
+    const double whole = sample_measure[left.sample];
+    result[first_row(left.sample) + length] = std::sqrt(left.measure * right.measure) / whole *
+                                              (across(k - 1) - across(k)) / std::sqrt(jump_weight);
+  }
+  return result;
 }
 
 Points Discretization::vertex_vectors(const Vector& vectors) const {

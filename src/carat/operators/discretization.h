@@ -124,6 +124,7 @@ struct Discretization {
   /// How many of a sample's last components are no part of its vector but jumps between its parts,
   /// scaled so that L = D G: 0 for most operators, 1 for stabilised diamonds.
   Index jump_components = 0;
+  double jump_weight = 0;  ///< part of the jumps' energy that is in the stiffness, 0 .. 1
   OneForms one_forms;
   Vector sample_measure;  ///< area or volume of every sample, 0 where degenerate
   GradientFrames frames;  ///< empty unless asked for
@@ -150,6 +151,16 @@ struct Discretization {
   /// by the differences of its unit vector: what no vector has would else count as length.
   /// \return flags of the samples that became zero
   std::vector<bool> normalise_samples(Vector& vectors) const;
+  /// What a field of one unit vector an element is for the samples: every sample's part-weighted
+  /// mean, and the jumps between its parts scaled so that the divergence of the result is that of
+  /// the field on the single parts.
+  /// \param vectors  one value a row of the gradient; the field is the direction of its element
+  ///                 means, zero in elements where these vanish
+  /// \throws InvalidOption  samples span several elements, and their jumps are not in the gradient
+  ///                        (diamond) or have no frame (volumes): lacks_element_directions()
+  Vector element_directions(const Vector& vectors) const;
+  /// \return empty, or why element_directions() cannot be had
+  std::string lacks_element_directions() const;
   /// Integrated row sums of the mass.
   Vector lumped_mass() const { return mass * Vector::Ones(mass.cols()); }
 

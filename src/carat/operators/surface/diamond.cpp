@@ -269,6 +269,7 @@ void DiamondAssembly<Term>::make_gradient_pattern() {
   const EdgeTopology& edges = mesh_.edges();
   result_.gradient_dimension = n_rows_;
   result_.jump_components = n_rows_ - 2;
+  result_.jump_weight = 1 - theta_;
   if (std::int64_t{n_diamonds()} * n_rows_ > std::numeric_limits<Index>::max())
     throw InvalidMesh("the gradient of " + std::to_string(n_diamonds()) +
                       " diamonds has more rows than 32 bits can number; split the mesh");

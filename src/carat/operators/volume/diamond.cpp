@@ -344,6 +344,7 @@ void VolumeDiamondAssembly::collect_columns(Index f, Array<Index>& columns) cons
 void VolumeDiamondAssembly::make_gradient_pattern() {
   result_.gradient_dimension = n_rows_;
   result_.jump_components = n_rows_ - 3;
+  result_.jump_weight = 1 - theta_;
   const Csr& faces = mesh_.face_mesh().faces();
   if (std::int64_t{n_diamonds()} * n_rows_ > std::numeric_limits<Index>::max())
     throw InvalidMesh("the gradient of " + std::to_string(n_diamonds()) +
