@@ -95,8 +95,7 @@ TEST(HeatGeodesics, divergence_of_element_directions_is_that_on_virtual_triangle
       Vector on_triangles(bunge.gradient.rows());
       for (std::size_t k = 0; k < bunge.frames.parts.size(); ++k) {
         const GradientFrames::Part& part = bunge.frames.parts[k];
-        on_triangles.segment<2>(bunge.first_row(part.sample)) =
-            bunge.frames.axes[k].transpose() * field.row(part.element).transpose();
+        on_triangles.segment<3>(bunge.first_row(part.sample)) = field.row(part.element).transpose();
       }
       const Vector expected = bunge.apply_divergence(on_triangles);
       EXPECT_LT((d.apply_divergence(directions) - expected).lpNorm<Eigen::Infinity>(),
