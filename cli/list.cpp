@@ -7,6 +7,7 @@
 #include "carat/io/mesh_file.h"
 #include "carat/operators/registry.h"
 #include "cli/command.h"
+#include "cli/experiments/experiment.h"
 #include "cli/mesh_kinds.h"
 
 namespace carat::cli {
@@ -130,6 +131,21 @@ Json list_formats(Session& session) {
   return list;
 }
 
+Json list_experiments(Session& session) {
+  Json list = Json::array();
+  for (const Experiment* experiment : experiments()) {
+    const std::string paper = experiment->paper != nullptr ? experiment->paper : "";
+    say_entry(session, experiment->name,
+              std::string(experiment->title) + (paper.empty() ? "" : " (") + paper +
+                  (paper.empty() ? "" : ")"));
+    list.push_back({{"name", experiment->name},
+                    {"title", experiment->title},
+                    {"paper", paper.empty() ? Json(nullptr) : Json(paper)},
+                    {"text", experiment->text}});
+  }
+  return list;
+}
+
 Json list_apps(Session& session) {
   Json list = Json::array();
   for (const Command* command : commands()) {
@@ -148,7 +164,8 @@ struct List {
 constexpr List kLists[] = {{"operators", list_operators},
                            {"families", list_families},
                            {"formats", list_formats},
-                           {"apps", list_apps}};
+                           {"apps", list_apps},
+                           {"experiments", list_experiments}};
 
 std::function<void(Session&)> declare(CLI::App& app) {
   const auto what = std::make_shared<std::string>();
@@ -165,7 +182,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
 
 const Command list_command = {
     "list",
-    "List operators, mesh families, file formats or apps",
+    "List operators, mesh families, file formats, apps or experiments",
     "Prints the names that other commands take, with one line about each.",
     "  carat list operators\n"
     "  carat list families --json\n",

@@ -33,13 +33,18 @@ ProgressLine::~ProgressLine() {
   drawer_.join();
 }
 
+void ProgressLine::show(std::string phase) {
+  const std::scoped_lock lock(mutex_);
+  phase_ = std::move(phase);
+}
+
 void ProgressLine::draw(const std::stop_token& stop) {
   constexpr std::string_view spokes = "|/-\\";
   std::unique_lock lock(mutex_);
   int steps = 0;
   while (!ended_.wait_for(lock, stop, kPause, [] { return false; }) && !stop.stop_requested()) {
     ++steps;
-    std::fprintf(stderr, "\r%c %s %.1f s ", spokes[static_cast<std::size_t>(steps) % 4],
+    std::fprintf(stderr, "\r\033[K%c %s %.1f s ", spokes[static_cast<std::size_t>(steps) % 4],
                  phase_.c_str(), static_cast<double>(steps * kPause.count()) / 1000);
   }
   if (steps > 0) std::fprintf(stderr, "\r\033[K");

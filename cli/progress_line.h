@@ -14,6 +14,8 @@ class ProgressLine {
  public:
   explicit ProgressLine(std::string phase);
   ~ProgressLine();
+  /// Another text from now on.
+  void show(std::string phase);
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 

@@ -1,0 +1,115 @@
+"""carat reproduce: its data, its cache, and its messages."""
+import csv
+import json
+import math
+import random
+import unittest
+
+from support import CaratTest, main
+
+
+# Terms c exp(-a (9x-x0)^2 - b (9y-y0)^2 - d (9y-y0)) of Franke's function: c, a, x0, b, y0, d.
+TERMS = [(0.75, 1 / 4, 2, 1 / 4, 2, 0), (0.75, 1 / 49, -1, 0, -1, 1 / 10),
+         (0.5, 1 / 4, 7, 1 / 4, 3, 0), (-0.2, 1, 4, 1, 7, 0)]
+
+
+def franke():
+    """Franke's function and minus its Laplacian, as expressions."""
+    value, source = [], []
+    for c, a, x0, b, y0, d in TERMS:
+        x, y = f"(9*x-({x0}))", f"(9*y-({y0}))"
+        term = f"({c})*exp(-({a!r})*{x}^2-({b!r})*{y}^2-({d!r})*{y})"
+        value.append(term)
+        source.append(f"-{term}*((18*({a!r})*{x})^2+(18*({b!r})*{y}+9*({d!r}))^2"
+                      f"-162*({a!r}+{b!r}))")
+    return "+".join(value), "".join(source)
+
+
+class Reproduce(CaratTest):
+    def reproduce(self, *arguments):
+        return self.report("reproduce", *arguments, "-o", "out")
+
+    def rows(self, name):
+        with open(self.folder / "out" / f"{name}.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_data_and_cache(self):
+        first = self.reproduce("franke-plane", "--quick", "--levels", 2)
+        self.assertEqual(first["cases"]["failed"], 0)
+        self.assertEqual(first["cases"]["cached"], 0)
+        rows = self.rows("franke-plane")
+        self.assertEqual(first["cases"]["measured"], len(rows))
+        self.assertEqual({row["family"] for row in rows},
+                         {"plane-triangles", "plane-quads", "plane-voronoi", "plane-concave"})
+        for row in rows:
+            self.assertTrue(0 < float(row["rmse"]) < 0.2, row)
+        # The same numbers in all files.
+        alone = json.loads((self.folder / "out/franke-plane.json").read_text())
+        report = json.loads((self.folder / "out/report.json").read_text())
+        for document in [alone, report]:
+            self.assertEqual(document["carat"], "0.1.0")
+            self.assertEqual(document["seed"], 1)
+            self.assertGreater(document["machine"]["cores"], 0)
+            [experiment] = document["experiments"]
+            self.assertEqual(experiment["name"], "franke-plane")
+            names = [column["name"] for column in experiment["columns"]]
+            self.assertEqual(names, list(rows[0]))
+            self.assertEqual([row[names.index("rmse")] for row in experiment["rows"]],
+                             [float(row["rmse"]) for row in rows])
+            for figure in experiment["figures"]:
+                used = [figure["x"], figure["y"], figure["panel"], *figure["series"]]
+                self.assertLessEqual(set(used), set(names))
+        before = (self.folder / "out/franke-plane.csv").read_bytes()
+        again = self.reproduce("franke-plane", "--quick", "--levels", 2)
+        self.assertEqual(again["cases"],
+                         {"measured": 0, "cached": len(rows), "failed": 0})
+        self.assertEqual((self.folder / "out/franke-plane.csv").read_bytes(), before)
+        # What an interrupted run has not measured, and what is damaged, is measured.
+        cache = sorted((self.folder / "out/cache").iterdir())
+        cache[0].unlink()
+        cache[1].write_text('{"key": "carat')
+        mended = self.reproduce("franke-plane", "--quick", "--levels", 2)
+        self.assertEqual(mended["cases"]["measured"], 2)
+        self.assertIn("is damaged", " ".join(mended["notes"]))
+        self.assertEqual((self.folder / "out/franke-plane.csv").read_bytes(), before)
+        fresh = self.reproduce("franke-plane", "--quick", "--levels", 2, "--fresh")
+        self.assertEqual(fresh["cases"]["measured"], len(rows))
+
+    def test_rows_can_be_measured_again_from_their_own_parameters(self):
+        """Three rows at random, by `carat poisson` instead."""
+        self.reproduce("franke-plane", "--quick", "--levels", 2)
+        rows = self.rows("franke-plane")
+        for row in random.Random().sample(rows, 3):
+            self.generate(row["family"], row["level"], "mesh.vtp")
+            options = ["--operator", row["operator"], "--mass", row["mass"]]
+            for name in ["theta", "tau"]:
+                if row[name]:
+                    options += [f"--{name}", row[name]]
+            error = self.error_of(options)
+            self.assertAlmostEqual(error / float(row["rmse"]), 1, delta=1e-6, msg=str(row))
+
+    def error_of(self, options):
+        value, source = franke()
+        report = self.report("poisson", "mesh.vtp", "--rhs", source, "--dirichlet", value,
+                             "--exact", value, *options)
+        # The program takes the mean over all vertices, those of the boundary with no error.
+        n = report["sizes"]["vertices"]
+        return report["errors"]["rmse"] * math.sqrt(n / (n - report["sizes"]["dirichlet_vertices"]))
+
+    def test_list(self):
+        listed = self.report("list", "experiments")["experiments"]
+        names = [experiment["name"] for experiment in listed]
+        self.assertEqual(len(names), len(set(names)))
+        for name in ["franke-plane", "franke-cube", "ball-eigenvalues", "columns"]:
+            self.assertIn(name, names)
+
+    def test_errors(self):
+        self.fail_with(2, "reproduce", "figure-8", "-o", "out", says=["figure-8", "franke-plane"])
+        self.fail_with(2, "reproduce", "franke-plane", says="--output")
+        self.write("file", "")
+        self.fail_with(3, "reproduce", "franke-plane", "--quick", "-o", "file",
+                       says="cannot make the folder")
+
+
+if __name__ == "__main__":
+    main()
