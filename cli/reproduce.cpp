@@ -243,12 +243,12 @@ std::vector<const Experiment*> chosen(const std::vector<std::string>& names) {
 void run(Session& session, const Options& options) {
   const fs::path directory = options.directory;
   const Cache cache(directory / "cache", options.fresh);
-  const Scale scale{options.levels, options.quick, session.threads()};
+  const Extent extent{options.levels, options.quick, session.threads()};
   const std::vector<const Experiment*> list = chosen(options.names);
   std::vector<std::vector<ExperimentCase>> cases;
   std::size_t n_cases = 0;
   for (const Experiment* experiment : list) {
-    cases.push_back(experiment->plan(scale));
+    cases.push_back(experiment->plan(extent));
     n_cases += cases.back().size();
   }
   Json header{{"format", 1},

@@ -149,7 +149,7 @@ std::vector<Json> measure(const Mesh& mesh, const std::string& family, int threa
 
 template <class Mesh, class Families>
 void add_cases(const Families& families, const char* domain, const std::vector<int>& levels,
-               const Scale& scale, std::vector<ExperimentCase>& cases) {
+               const Extent& extent, std::vector<ExperimentCase>& cases) {
   const auto source = std::make_shared<MeshSource<Mesh>>();
   for (const auto& entry : families) {
     const std::string family = entry.name;
@@ -161,7 +161,7 @@ void add_cases(const Families& families, const char* domain, const std::vector<i
         FamilyOptions options = shape;
         options.level = mesh_level(family, level);
         cases.push_back({{{"family", family}, {"variant", variant}, {"level", options.level}},
-                         [=, threads = scale.threads] {
+                         [=, threads = extent.threads] {
                            return measure(source->get(family, options), family, threads);
                          }});
       }
@@ -237,12 +237,12 @@ extern const Experiment columns_experiment = {
       }
       return figures;
     },
-    [](const Scale& scale) {
+    [](const Extent& extent) {
       std::vector<ExperimentCase> cases;
-      const std::vector<int> surface = scale.levels_from(scale.quick ? 2 : 3, 2, 1);
-      add_cases<PolygonMesh>(mesh_families(), "plane-", surface, scale, cases);
-      add_cases<PolygonMesh>(mesh_families(), "sphere-", surface, scale, cases);
-      add_cases<PolyhedralMesh>(volume_families(), "cube-", scale.levels_from(1, 2, 1), scale,
+      const std::vector<int> surface = extent.levels_from(extent.quick ? 2 : 3, 2, 1);
+      add_cases<PolygonMesh>(mesh_families(), "plane-", surface, extent, cases);
+      add_cases<PolygonMesh>(mesh_families(), "sphere-", surface, extent, cases);
+      add_cases<PolyhedralMesh>(volume_families(), "cube-", extent.levels_from(1, 2, 1), extent,
                                 cases);
       return cases;
     },

@@ -113,8 +113,8 @@ extern const Experiment cost_surface_experiment = {
     "supernodal CHOLMOD, on one thread.",
     columns_with(kCosts),
     [] { return table("cost-surface", "Cost on surfaces"); },
-    [](const Scale& scale) {
-      const int level = scale.quick ? 4 : 6;
+    [](const Extent& extent) {
+      const int level = extent.quick ? 4 : 6;
       return cases_of<PolygonMesh>({{"plane-triangles", level},
                                     {"plane-quads", level},
                                     {"sphere-hexagons", level},
@@ -130,8 +130,8 @@ extern const Experiment cost_volume_experiment = {
     "supernodal CHOLMOD, on one thread.",
     columns_with(kCosts),
     [] { return table("cost-volume", "Cost in volumes"); },
-    [](const Scale& scale) {
-      const int level = scale.quick ? 2 : 3;
+    [](const Extent& extent) {
+      const int level = extent.quick ? 2 : 3;
       return cases_of<PolyhedralMesh>({{"cube-hexahedra", level},
                                        {"cube-pyramids", level},
                                        {"cube-truncated", level},

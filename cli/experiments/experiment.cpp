@@ -2,7 +2,7 @@
 
 namespace carat::cli {
 
-std::vector<int> Scale::levels_from(int first, int n_full, int n_quick) const {
+std::vector<int> Extent::levels_from(int first, int n_full, int n_quick) const {
   std::vector<int> list(static_cast<std::size_t>(levels.value_or(quick ? n_quick : n_full)));
   for (std::size_t k = 0; k < list.size(); ++k) list[k] = first + static_cast<int>(k);
   return list;

@@ -12,7 +12,7 @@
 namespace carat::cli {
 
 /// How far an experiment goes.
-struct Scale {
+struct Extent {
   std::optional<int> levels;  ///< number of refinement levels; default: the experiment's own
   bool quick = false;         ///< coarse meshes: everything in two minutes
   int threads = 0;
@@ -42,7 +42,7 @@ struct Experiment {
   const char* text;   ///< what is computed
   std::vector<ExperimentColumn> columns;
   Json (*figures)();
-  std::vector<ExperimentCase> (*plan)(const Scale& scale);
+  std::vector<ExperimentCase> (*plan)(const Extent& extent);
   /// Columns that compare rows with each other; may be null.
   void (*finish)(std::vector<Json>& rows);
 };

@@ -35,7 +35,7 @@ inline int mesh_level(const std::string& family, int level) {
 template <class Mesh, class Measure>
 std::vector<ExperimentCase> convergence_cases(const Families& families,
                                               const std::vector<int>& levels, Methods methods,
-                                              DiscretizationParts parts, const Scale& scale,
+                                              DiscretizationParts parts, const Extent& extent,
                                               const Measure& measure) {
   const auto source = std::make_shared<MeshSource<Mesh>>();
   std::vector<ExperimentCase> cases;
@@ -46,7 +46,7 @@ std::vector<ExperimentCase> convergence_cases(const Families& families,
         Json parameters{{"family", family}, {"level", options.level}};
         parameters.update(parameters_of<Mesh>(method));
         cases.push_back(
-            {parameters, [=, threads = scale.threads] {
+            {parameters, [=, threads = extent.threads] {
                const Mesh& mesh = source->get(family, options);
                const Json sizes = sizes_of(mesh);
                std::vector<Json> rows =

@@ -66,10 +66,10 @@ extern const Experiment curvature_sphere_experiment = {
           "method. Lumped masses damp what full ones amplify.",
           "family", {"operator", "mass"}, "mean_edge", "rmse")});
     },
-    [](const Scale& scale) {
+    [](const Extent& extent) {
       return convergence_cases<PolygonMesh>(
-          kSpheres, scale.levels_from(1, 4, 3), with_lumped_masses, DiscretizationParts::Matrices,
-          scale, [](const PolygonMesh& mesh, const Discretization& d) {
+          kSpheres, extent.levels_from(1, 4, 3), with_lumped_masses, DiscretizationParts::Matrices,
+          extent, [](const PolygonMesh& mesh, const Discretization& d) {
             return std::vector<Json>{{{"rmse", sphere_curvature_error(mesh, d)}}};
           });
     },
@@ -88,9 +88,9 @@ extern const Experiment geodesics_sphere_experiment = {
                                       "that can be had.",
                                       "family", {"operator", "mass"}, "mean_edge", "rmse")});
     },
-    [](const Scale& scale) {
+    [](const Extent& extent) {
       return convergence_cases<PolygonMesh>(
-          kSpheres, scale.levels_from(1, 4, 3),
+          kSpheres, extent.levels_from(1, 4, 3),
           [](const std::string& family) {
             std::vector<Method> methods = compared_methods(family);
             // Full masses of virtual elements let heat become negative.
@@ -98,7 +98,7 @@ extern const Experiment geodesics_sphere_experiment = {
               if (method.name == "vem") method.mass = MassKind::Lumped;
             return methods;
           },
-          DiscretizationParts::Gradient, scale,
+          DiscretizationParts::Gradient, extent,
           [](const PolygonMesh& mesh, const Discretization& d) {
             return std::vector<Json>{{{"rmse", mean_distance_error(mesh, d, {})}}};
           });
@@ -118,10 +118,10 @@ extern const Experiment franke_plane_experiment = {
                                       "depends on the mass as much as on the stiffness.",
                                       "family", {"operator", "mass"}, "mean_edge", "rmse")});
     },
-    [](const Scale& scale) {
+    [](const Extent& extent) {
       return convergence_cases<PolygonMesh>(
-          kPlanes, scale.levels_from(1, 4, 3), with_moment_exact_masses,
-          DiscretizationParts::Matrices, scale,
+          kPlanes, extent.levels_from(1, 4, 3), with_moment_exact_masses,
+          DiscretizationParts::Matrices, extent,
           [](const PolygonMesh& mesh, const Discretization& d) {
             return std::vector<Json>{
                 {{"rmse", dirichlet_errors(mesh, d.stiffness, {&d.mass}, kFranke)[0]}}};
@@ -147,10 +147,10 @@ extern const Experiment harmonic_sphere_experiment = {
                        "Second order for all methods.", "family", {"operator", "mass"}, "mean_edge",
                        "solved")});
     },
-    [](const Scale& scale) {
+    [](const Extent& extent) {
       return convergence_cases<PolygonMesh>(
-          kSpheres, scale.levels_from(1, 4, 3), with_lumped_masses, DiscretizationParts::Matrices,
-          scale, [](const PolygonMesh& mesh, const Discretization& d) {
+          kSpheres, extent.levels_from(1, 4, 3), with_lumped_masses, DiscretizationParts::Matrices,
+          extent, [](const PolygonMesh& mesh, const Discretization& d) {
             const Vector y = values_at(mesh, third_harmonic);
             return std::vector<Json>{
                 {{"applied", applied_error(d.stiffness, d.mass, y, 12)},
@@ -176,7 +176,7 @@ extern const Experiment timestep_experiment = {
       longest["references"] = Json::array();
       return Json::array({longest});
     },
-    [](const Scale& scale) {
+    [](const Extent& extent) {
       std::vector<ExperimentCase> cases;
       const auto source = std::make_shared<MeshSource<PolygonMesh>>();
       for (const char* const family : kSpheres)
@@ -184,13 +184,13 @@ extern const Experiment timestep_experiment = {
              {Method{"diamond"}, Method{"stabilized_diamond"}, Method{"bunge"}, Method{"de_goes"}})
           for (const bool longest : {true, false})
             for (const double t_coef : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
-              const FamilyOptions options{.level = scale.quick ? 2 : 3};
+              const FamilyOptions options{.level = extent.quick ? 2 : 3};
               Json parameters{{"family", family}, {"level", options.level}};
               parameters.update(parameters_of<PolygonMesh>(method));
               parameters["h"] = longest ? "max" : "mean";
               parameters["t_coef"] = t_coef;
               cases.push_back(
-                  {parameters, [=, threads = scale.threads] {
+                  {parameters, [=, threads = extent.threads] {
                      const PolygonMesh& mesh = source->get(family, options);
                      Json row = sizes_of(mesh);
                      row["rmse"] = mean_distance_error(
@@ -231,11 +231,11 @@ extern const Experiment virtual_vertices_experiment = {
       }
       return figures;
     },
-    [](const Scale& scale) {
+    [](const Extent& extent) {
       std::vector<ExperimentCase> cases;
       const auto source = std::make_shared<MeshSource<PolygonMesh>>();
       for (const char* const family : {"plane-concave", "plane-lshape", "sphere-concave"})
-        for (const int level : scale.levels_from(1, 4, 3))
+        for (const int level : extent.levels_from(1, 4, 3))
           for (const char* const name : {"diamond", "stabilized_diamond", "bunge"})
             for (const VirtualPoint point : {VirtualPoint::AreaMinimizer, VirtualPoint::Centroid,
                                              VirtualPoint::TraceMinimizer}) {
@@ -245,7 +245,7 @@ extern const Experiment virtual_vertices_experiment = {
                                              : point == VirtualPoint::Centroid    ? "centroid"
                                                                                   : "trace";
               cases.push_back(
-                  {parameters, [=, threads = scale.threads] {
+                  {parameters, [=, threads = extent.threads] {
                      const PolygonMesh& mesh = source->get(family, {.level = level});
                      DiscretizationOptions options =
                          options_of({name}, DiscretizationParts::Matrices, threads);

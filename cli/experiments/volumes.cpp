@@ -87,9 +87,9 @@ extern const Experiment franke_cube_experiment = {
                                       "on most meshes.",
                                       "family", {"operator", "mass"}, "mean_edge", "rmse")});
     },
-    [](const Scale& scale) {
+    [](const Extent& extent) {
       return convergence_cases<PolyhedralMesh>(
-          kCubes, scale.levels_from(1, 3, 2), cube_methods, DiscretizationParts::Matrices, scale,
+          kCubes, extent.levels_from(1, 3, 2), cube_methods, DiscretizationParts::Matrices, extent,
           [](const PolyhedralMesh& mesh, const Discretization& d) {
             return std::vector<Json>{{{"rmse", dirichlet_error(mesh, d, kFranke3d)}}};
           });
@@ -130,9 +130,9 @@ extern const Experiment ball_eigenvalues_experiment = {
                     {"filter", {{"index", 1}}}};
       return Json::array({values, deviations, table});
     },
-    [](const Scale& scale) {
-      return convergence_cases<PolyhedralMesh>(kBalls, scale.levels_from(1, 2, 1), ball_methods,
-                                               DiscretizationParts::Matrices, scale, ball_rows);
+    [](const Extent& extent) {
+      return convergence_cases<PolyhedralMesh>(kBalls, extent.levels_from(1, 2, 1), ball_methods,
+                                               DiscretizationParts::Matrices, extent, ball_rows);
     },
     mark_finest};
 
