@@ -14,6 +14,7 @@
 #include "carat/generators/families.h"
 #include "cli/command.h"
 #include "cli/experiments/experiment.h"
+#include "cli/figures.h"
 
 namespace carat::cli {
 namespace {
@@ -276,6 +277,7 @@ void run(Session& session, const Options& options) {
     alone["experiments"] = Json::array({result});
     write_text(directory / (std::string(experiment.name) + ".json"), alone.dump(1) + "\n");
     write_text(directory / (std::string(experiment.name) + ".csv"), to_csv(result));
+    write_figures(result, directory.string());
     report["experiments"].push_back(result);
     session.say(std::string(experiment.name) + ": " + count(std::ssize(rows), "row"));
   }

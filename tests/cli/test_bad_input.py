@@ -23,7 +23,7 @@ class Usage(CaratTest):
             (["info", "mesh.ply", "--frobnicate"], "--frobnicate"),
             (["info", "mesh.ply", "--threads", "-1"], "Value -1 not in range 0 to 1024"),
             (["info", "mesh.ply", "--threads", "many"], "Value many not in range 0 to 1024"),
-            (["list", "colours"], "colours not in {operators,families,formats,apps}"),
+            (["list", "colours"], "colours not in {operators,families,formats,apps,experiments}"),
             (["generate", "plane-quads", "-o", "a.ply"], "--level is required"),
             (["generate", "plane-quads", "--level", "x", "-o", "a.ply"], "--level = x"),
             (["generate", "plane-quads", "--level", "-1", "-o", "a.ply"], "level -1"),
