@@ -77,6 +77,8 @@ void Canvas::text(Place place, const std::string& text, const Font& font, Align 
     set_font(run.raised ? kRaisedSize * font.size : font.size, font.bold);
     cairo_move_to(cairo_.get(), x, (kHalfCapital - (run.raised ? kRaise : 0)) * font.size);
     cairo_show_text(cairo_.get(), run.text.c_str());
+    // The text leaves a current point behind, from which the next line would start.
+    cairo_new_path(cairo_.get());
     cairo_text_extents_t extents;
     cairo_text_extents(cairo_.get(), run.text.c_str(), &extents);
     x += extents.x_advance;

@@ -322,7 +322,8 @@ const Command reproduce_command = {
     "Measure the experiments of the paper, and ours",
     "Every experiment writes its data as CSV and JSON, with all parameters that it takes to "
     "repeat\n"
-    "a row. Results are kept in the folder's cache, so that an interrupted run goes on.",
+    "a row, and its figures as SVG and PNG. Results are kept in the folder's cache, so that an\n"
+    "interrupted run goes on.",
     "  carat reproduce --quick -o results\n"
     "  carat reproduce franke-plane harmonic-sphere -o results\n"
     "  carat reproduce columns --fresh -o results --json\n",
