@@ -37,11 +37,13 @@ bool is_short(double value) {
 }
 
 std::string power_text(const std::string& mantissa, int exponent) {
+  if (exponent == 0) return with_minus_sign(mantissa);
   const std::string power = "10^{" + with_minus_sign(std::to_string(exponent)) + "}";
   return mantissa == "1" ? power : with_minus_sign(mantissa) + "\u00d7" + power;
 }
 
 std::string number_text(double value, int digits, bool keep_zeros) {
+  value += 0.0;  // zero has no sign
   const std::string scientific = print("%.*e", digits - 1, value);
   const std::size_t e = scientific.find('e');
   if (e == std::string::npos) return scientific;  // not finite

@@ -186,7 +186,8 @@ TEST(FigureNumbers, are_short_and_keep_their_digits) {
   EXPECT_EQ(ratio_text(0.987), "0.99");
   EXPECT_EQ(ratio_text(12.34), "12.3");
   EXPECT_EQ(ratio_text(123.4), "123");
-  EXPECT_EQ(ratio_text(0.0012), "10^{\u22123}");
+  EXPECT_EQ(ratio_text(0.0012), "0.001");
+  EXPECT_EQ(ratio_text(0.00012), "10^{\u22124}");
 }
 
 std::vector<std::string> labels(const Axis& axis) {
