@@ -117,7 +117,7 @@ extern const Experiment cost_surface_experiment = {
       const int level = extent.quick ? 4 : 6;
       return cases_of<PolygonMesh>({{"plane-triangles", level},
                                     {"plane-quads", level},
-                                    {"sphere-hexagons", level},
+                                    {"sphere-hexagons", level - 1},
                                     {"plane-concave", level}});
     },
     nullptr};
