@@ -15,6 +15,7 @@
 #include "cli/command.h"
 #include "cli/experiments/experiment.h"
 #include "cli/figures.h"
+#include "cli/report_page.h"
 
 namespace carat::cli {
 namespace {
@@ -283,6 +284,7 @@ void run(Session& session, const Options& options) {
   }
   report["seconds"] = all_seconds;
   write_text(directory / "report.json", report.dump(1) + "\n");
+  write_report_page(report, directory / "report.html");
   Json summary = Json::array();
   for (const Json& experiment : report["experiments"])
     summary.push_back({{"name", experiment["name"]},
@@ -322,8 +324,8 @@ const Command reproduce_command = {
     "Measure the experiments of the paper, and ours",
     "Every experiment writes its data as CSV and JSON, with all parameters that it takes to "
     "repeat\n"
-    "a row, and its figures as SVG and PNG. Results are kept in the folder's cache, so that an\n"
-    "interrupted run goes on.",
+    "a row, and its figures as SVG and PNG; report.html shows them all. Results are kept in the\n"
+    "folder's cache, so that an interrupted run goes on.",
     "  carat reproduce --quick -o results\n"
     "  carat reproduce franke-plane harmonic-sphere -o results\n"
     "  carat reproduce columns --fresh -o results --json\n",

@@ -1,7 +1,8 @@
-// node embed.mjs PAGE.html OUT.cpp: the page as a C++ function (see viewer_template.h).
+// node embed.mjs PAGE.html OUT.cpp NAME: the page as a C++ function of that name (see
+// viewer_template.h).
 import { readFileSync, writeFileSync } from 'node:fs';
 
-const [input, output] = process.argv.slice(2);
+const [input, output, name] = process.argv.slice(2);
 const bytes = readFileSync(input);
 for (const mark of ['<!--carat:title-->', '<!--carat:data-->'])
   if (bytes.toString('utf8').split(mark).length !== 2)
@@ -21,7 +22,7 @@ constexpr unsigned char page[] = {
 ${lines.join(',\n')}};
 }  // namespace
 
-std::string_view viewer_template() {
+std::string_view ${name}() {
   return {reinterpret_cast<const char*>(page), sizeof page};
 }
 
