@@ -54,7 +54,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
   app.add_option("-o,--output", options->output,
                  "File for the mesh with the field mean_curvature, or a\n"
                  "view (.html); without it nothing is written");
-  declare_operator_options(app, options->discretization, true);
+  declare_operator_options(app, options->discretization, Application::MeanCurvature);
   return [options](Session& session) { run(session, *options); };
 }
 

@@ -92,7 +92,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "File for the mesh with the fields mode_1, mode_2, ...\n"
                  "(vertices), or a view (.html); without it nothing is\n"
                  "written");
-  declare_operator_options(app, options->discretization);
+  declare_operator_options(app, options->discretization, Application::Eigenmodes);
   return [options](Session& session) { run(session, *options); };
 }
 

@@ -1,5 +1,6 @@
 #include "cli/figure_canvas.h"
 
+#include <cstring>
 #include <numbers>
 
 namespace carat::cli {
@@ -143,6 +144,26 @@ void Canvas::polygon(const std::vector<Place>& points, Color fill, Color outline
   for (const Place& point : points) cairo_line_to(cairo_.get(), point.x, point.y);
   cairo_close_path(cairo_.get());
   fill_and_stroke(fill, outline, width);
+}
+
+void Canvas::image(Place corner, Size size, const Image& image) const {
+  const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> pixels(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height),
+      &cairo_surface_destroy);
+  unsigned char* const bytes = cairo_image_surface_get_data(pixels.get());
+  if (bytes == nullptr) return;
+  const int stride = cairo_image_surface_get_stride(pixels.get());
+  for (int y = 0; y < image.height; ++y)
+    std::memcpy(bytes + static_cast<std::ptrdiff_t>(y) * stride,
+                image.pixels.data() + static_cast<std::ptrdiff_t>(y) * image.width,
+                4 * static_cast<std::size_t>(image.width));
+  cairo_surface_mark_dirty(pixels.get());
+  cairo_save(cairo_.get());
+  cairo_translate(cairo_.get(), corner.x, corner.y);
+  cairo_scale(cairo_.get(), size.width / image.width, size.height / image.height);
+  cairo_set_source_surface(cairo_.get(), pixels.get(), 0, 0);
+  cairo_paint(cairo_.get());
+  cairo_restore(cairo_.get());
 }
 
 void Canvas::circle(Place center, double radius, Color fill, Color outline, double width) const {

@@ -7,20 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "cli/figure_image.h"
+
 namespace carat::cli {
-
-/// Red, green and blue from 0 to 1.
-struct Color {
-  double red;
-  double green;
-  double blue;
-};
-
-/// A colour from its usual six digits.
-constexpr Color rgb(unsigned digits) {
-  return {static_cast<double>(digits >> 16 & 255) / 255,
-          static_cast<double>(digits >> 8 & 255) / 255, static_cast<double>(digits & 255) / 255};
-}
 
 inline constexpr Color kBlack = rgb(0x1a1a1a);
 inline constexpr Color kGray = rgb(0x666666);
@@ -64,6 +53,7 @@ class Canvas {
   void stroke_rectangle(Place corner, Size size, double width, Color color) const;
   /// A closed shape with an outline.
   void polygon(const std::vector<Place>& points, Color fill, Color outline, double width) const;
+  void image(Place corner, Size size, const Image& image) const;
   void circle(Place center, double radius, Color fill, Color outline, double width) const;
 
   /// Nothing is drawn outside of a rectangle until end_clip.

@@ -241,7 +241,42 @@ TableFigure read_table(const Json& figure, const Rows& rows) {
   return table;
 }
 
-Figure read_figure(const Json& figure, const Json& experiment) {
+/// Values beyond this part at either end do not widen the range of colours.
+constexpr double kTail = 0.02;
+constexpr int kPicturePixels = 640;
+
+PictureFigure read_picture(const Json& figure, const std::vector<ViewItem>& surfaces) {
+  PictureFigure picture;
+  std::vector<double> all;
+  const auto field_of = [](const ViewItem& item) -> const Field& {
+    return std::get<SurfaceData>(item.data).fields.vertex.at(0);
+  };
+  for (const ViewItem& item : surfaces)
+    for (const double value : field_of(item).values)
+      if (std::isfinite(value)) all.push_back(value);
+  std::sort(all.begin(), all.end());
+  picture.scale.isolines = figure.value("isolines", 0);
+  // Distances show all of their range, curvatures not their few extremes.
+  const auto tail = static_cast<std::size_t>(
+      picture.scale.isolines > 0 ? 0 : kTail * static_cast<double>(all.size()));
+  if (!all.empty()) {
+    picture.scale.low = all[tail];
+    picture.scale.high = all[all.size() - 1 - tail];
+  }
+  for (const ViewItem& item : surfaces) {
+    const Field& field = field_of(item);
+    picture.value_title = field.name;
+    std::replace(picture.value_title.begin(), picture.value_title.end(), '_', ' ');
+    const Vector values = Eigen::Map<const Vector>(field.values.data(),
+                                                   static_cast<Eigen::Index>(field.values.size()));
+    picture.images.emplace_back(item.title, render(std::get<SurfaceData>(item.data).mesh, values,
+                                                   picture.scale, kPicturePixels, kPicturePixels));
+  }
+  return picture;
+}
+
+Figure read_figure(const Json& figure, const Json& experiment,
+                   const std::vector<ViewItem>& surfaces) {
   const std::string id = figure.at("id");
   const Rows rows(experiment, id);
   if (id.empty() || id.find('/') != std::string::npos) rows.fail("the id is no name of a file");
@@ -250,7 +285,8 @@ Figure read_figure(const Json& figure, const Json& experiment) {
   if (kind == "lines") return {id, title, read_lines(figure, rows)};
   if (kind == "matrix") return {id, title, read_matrix(figure, rows)};
   if (kind == "table") return {id, title, read_table(figure, rows)};
-  rows.fail("the kind '" + kind + "' is none of lines, matrix, table");
+  if (kind == "picture") return {id, title, read_picture(figure, surfaces)};
+  rows.fail("the kind '" + kind + "' is none of lines, matrix, table, picture");
 }
 
 }  // namespace
@@ -271,11 +307,12 @@ std::optional<double> fitted_slope(const std::vector<CurvePoint>& points) {
   return xy / xx;
 }
 
-std::vector<Figure> read_figures(const Json& experiment) {
+std::vector<Figure> read_figures(const Json& experiment, const std::vector<ViewItem>& surfaces) {
   std::vector<Figure> figures;
   try {
     for (const Json& figure : experiment.at("figures"))
-      figures.push_back(read_figure(figure, experiment));
+      if (!surfaces.empty() || figure.value("kind", "") != "picture")
+        figures.push_back(read_figure(figure, experiment, surfaces));
   } catch (const Json::exception& error) {
     throw InvalidOption("figure " + std::to_string(figures.size() + 1) +
                         " of the experiment is not complete: " + error.what());

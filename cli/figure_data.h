@@ -7,7 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include "carat/report/html_view.h"
 #include "cli/figure_axis.h"
+#include "cli/figure_render.h"
 #include "cli/session.h"
 
 namespace carat::cli {
@@ -77,15 +79,25 @@ struct TableFigure {
   std::vector<Column> columns;
 };
 
+/// Surfaces with values, coloured on one scale.
+struct PictureFigure {
+  std::string value_title;
+  ColorScale scale{};
+  std::vector<std::pair<std::string, Image>> images{};  ///< with their titles
+};
+
 struct Figure {
   std::string id;
   std::string title;
-  std::variant<LinesFigure, MatrixFigure, TableFigure> content;
+  std::variant<LinesFigure, MatrixFigure, TableFigure, PictureFigure> content;
 };
 
+/// Those of kind "picture" show `surfaces`, each with one field of its vertices; without any they
+/// are left out.
 /// \throws InvalidOption  a figure names a column that does not exist, shows text as numbers, has
 ///                        two rows for one place of a matrix, or lacks something
-std::vector<Figure> read_figures(const Json& experiment);
+std::vector<Figure> read_figures(const Json& experiment,
+                                 const std::vector<ViewItem>& surfaces = {});
 
 /// The least-squares slope, if the x differ.
 std::optional<double> fitted_slope(const std::vector<CurvePoint>& points);

@@ -45,6 +45,9 @@ Size draw(cairo_surface_t* surface, const Figure& figure, double width) {
     Size operator()(const LinesFigure& lines) const { return draw_lines(canvas, lines, top); }
     Size operator()(const MatrixFigure& matrix) const { return draw_matrix(canvas, matrix, top); }
     Size operator()(const TableFigure& table) const { return draw_table(canvas, table, top); }
+    Size operator()(const PictureFigure& picture) const {
+      return draw_picture(canvas, picture, top);
+    }
   };
   const Size size = std::visit(Draw{canvas, y}, figure.content);
   return {std::ceil(size.width), std::ceil(size.height)};

@@ -24,9 +24,10 @@ struct Picture {
 /// \throws InvalidOption  more rows than an image can hold
 Picture draw_figure(const Figure& figure);
 
-/// The three kinds, from a line `top` downwards. They return the figure's size.
+/// The four kinds, from a line `top` downwards. They return the figure's size.
 Size draw_lines(const Canvas& canvas, const LinesFigure& figure, double top);
 Size draw_matrix(const Canvas& canvas, const MatrixFigure& figure, double top);
 Size draw_table(const Canvas& canvas, const TableFigure& figure, double top);
+Size draw_picture(const Canvas& canvas, const PictureFigure& figure, double top);
 
 }  // namespace carat::cli

@@ -24,9 +24,10 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
 
 }  // namespace
 
-void write_figures(const Json& experiment, const std::string& directory) {
+void write_figures(const Json& experiment, const std::string& directory,
+                   const std::vector<ViewItem>& surfaces) {
   std::vector<std::pair<std::string, Picture>> pictures;
-  for (const Figure& figure : read_figures(experiment))
+  for (const Figure& figure : read_figures(experiment, surfaces))
     pictures.emplace_back(figure.id, draw_figure(figure));
   for (const auto& [id, picture] : pictures) {
     write_bytes(std::filesystem::path(directory) / (id + ".svg"), picture.svg);

@@ -125,7 +125,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "File for the mesh with the fields distance (vertices)\n"
                  "and direction (faces or cells), or a view (.html);\n"
                  "without it nothing is written");
-  declare_operator_options(app, options->discretization);
+  declare_operator_options(app, options->discretization, Application::Geodesics);
   return [options](Session& session) { run(session, *options); };
 }
 

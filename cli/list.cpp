@@ -1,8 +1,11 @@
 // carat list: what the program knows.
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <memory>
+#include <type_traits>
 
+#include "carat/apps/recommended.h"
 #include "carat/generators/families.h"
 #include "carat/io/mesh_file.h"
 #include "carat/operators/registry.h"
@@ -41,13 +44,13 @@ Json describe_options(const OperatorOptionSet& options) {
 }
 
 template <class Entry>
-Json describe_operator(const Entry& entry, const char* kind, bool is_default) {
+Json describe_operator(const Entry& entry, const char* kind, const Json& default_of) {
   const OperatorClaims& claims = entry.claims;
   return {{"name", entry.name},
           {"kind", kind},
           {"title", entry.title},
           {"citation", entry.citation},
-          {"default", is_default},
+          {"default_of", default_of},
           {"claims",
            {{"symmetric", claims.symmetric},
             {"semidefinite", claims.semidefinite},
@@ -72,18 +75,40 @@ Json describe_operator(const Entry& entry, const char* kind, bool is_default) {
             {"references", entry.card.references}}}};
 }
 
+/// The commands that take the operator where none is named, with the options that they give it.
+template <class Mesh>
+Json uses_by_default(const OperatorEntry<Mesh>& entry, const Mesh& mesh) {
+  constexpr std::array<std::pair<const char*, Application>, 4> kApplications{
+      {{"curvature", Application::MeanCurvature},
+       {"geodesics", Application::Geodesics},
+       {"poisson", Application::Poisson},
+       {"eigen", Application::Eigenmodes}}};
+  Json uses = Json::array();
+  if (&entry == operators_of(mesh).front()) uses.push_back({{"command", "operators"}});
+  for (const auto& [command, application] : kApplications) {
+    const OperatorChoice choice = recommended_operator(application, mesh);
+    if (std::is_same_v<Mesh, PolyhedralMesh> && application == Application::MeanCurvature) continue;
+    if (std::string(choice.name) != entry.name) continue;
+    Json use{{"command", command}};
+    if (choice.mass != MassKind::Default) use["mass"] = mass_kind_name(choice.mass);
+    if (choice.theta) use["theta"] = *choice.theta;
+    uses.push_back(use);
+  }
+  return uses;
+}
+
 Json list_operators(Session& session) {
   Json list = Json::array();
-  const auto list_all = [&](const KindWords& kind, const auto& operators) {
+  const auto list_all = [&](const KindWords& kind, const auto& operators, const auto& mesh) {
     list_kind(session, kind, operators, list,
               [&](const auto* entry, const KindWords& words) -> Json {
                 say_entry(session, std::string("  ") + entry->name,
                           std::string(entry->title) + " [" + entry->citation + "]");
-                return describe_operator(*entry, words.name, entry == operators.front());
+                return describe_operator(*entry, words.name, uses_by_default(*entry, mesh));
               });
   };
-  list_all(kSurfaceWords, surface_operators());
-  list_all(kVolumeWords, volume_operators());
+  list_all(kSurfaceWords, surface_operators(), PolygonMesh());
+  list_all(kVolumeWords, volume_operators(), PolyhedralMesh());
   return list;
 }
 

@@ -113,11 +113,17 @@ std::string join_in_lines(const std::vector<std::string>& words) {
   return list;
 }
 
+/// What is taken where no operator is named.
+template <class Mesh>
+OperatorChoice default_choice(const Mesh& mesh, const std::optional<Application>& application) {
+  if (application) return recommended_operator(*application, mesh);
+  return {operators_of(mesh).front()->name};
+}
+
 /// The operator of that name on meshes of this kind.
 template <class Mesh>
 const OperatorEntry<Mesh>& choose_operator(const Mesh& mesh, const std::string& name) {
   const auto& operators = operators_of(mesh);
-  if (name.empty()) return *operators.front();
   for (const OperatorEntry<Mesh>* entry : operators)
     if (name == entry->name) return *entry;
   throw InvalidOption("--operator " + name + ": there is none of this name for " +
@@ -149,9 +155,15 @@ DegenerateElement as_option(const DegenerateElement& error) {
 template <class Mesh>
 Discretization discretize_mesh(Session& session, const Mesh& mesh, const OperatorOptions& options,
                                DiscretizationParts parts, const Coefficient& coefficient) {
-  const OperatorEntry<Mesh>& entry = choose_operator(mesh, options.name);
+  const OperatorChoice choice = default_choice(mesh, options.application);
+  const OperatorEntry<Mesh>& entry =
+      choose_operator(mesh, options.name.empty() ? choice.name : options.name);
   refuse_unused(entry.name, entry.options, options);
   DiscretizationOptions library_options = to_library(options);
+  if (options.name.empty()) {
+    if (options.mass.empty()) library_options.mass = choice.mass;
+    if (!options.theta) library_options.theta = choice.theta;
+  }
   library_options.parts = parts;
   library_options.coefficient = coefficient.function;
   library_options.cell_coefficient = coefficient.of_cells;
@@ -184,10 +196,16 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
 
 }  // namespace
 
-void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surfaces_only) {
+void declare_operator_options(CLI::App& app, OperatorOptions& options,
+                              std::optional<Application> application) {
+  options.application = application;
+  const bool surfaces_only = application == Application::MeanCurvature;
   std::vector<std::string> choices = names(surface_operators());
-  std::string description =
-      "The discrete operator; see carat list operators.\nSurfaces:\n" + join_in_lines(choices);
+  std::string description = "The discrete operator; see carat list operators.\nDefault: " +
+                            default_choice(PolygonMesh(), application).words();
+  if (!surfaces_only)
+    description += ",\nin volumes " + default_choice(PolyhedralMesh(), application).words();
+  description += ".\nSurfaces:\n" + join_in_lines(choices);
   if (!surfaces_only) {
     const std::vector<std::string> of_volumes = names(volume_operators());
     description += ";\nvolumes:\n" + join_in_lines(of_volumes);
@@ -196,7 +214,7 @@ void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surf
   }
   app.add_option("--operator", options.name, description)
       ->check(CLI::IsMember(choices))
-      ->option_text("NAME=" + choices.front())
+      ->option_text("NAME")
       ->group("Operator");
   app.add_option("--virtual-point", options.virtual_point,
                  "Where a face's virtual vertex lies: least squared area of\n"

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "carat/apps/recommended.h"
 #include "carat/operators/registry.h"
 #include "cli/session.h"
 
@@ -15,8 +16,9 @@ class App;
 namespace carat::cli {
 
 struct OperatorOptions {
-  std::string name;           ///< empty: the default of the mesh's kind
-  std::string virtual_point;  ///< empty, like all below: the library's default
+  std::optional<Application> application;  ///< empty: the matrices themselves
+  std::string name;                        ///< empty: the application's
+  std::string virtual_point;               ///< empty, like all below: the library's default
   std::string weights;
   std::string mass;
   std::optional<double> lambda, theta, tau;
@@ -26,7 +28,8 @@ struct OperatorOptions {
 };
 
 /// Declares --operator and its relatives.
-void declare_operator_options(CLI::App& app, OperatorOptions& options, bool surfaces_only = false);
+void declare_operator_options(CLI::App& app, OperatorOptions& options,
+                              std::optional<Application> application);
 
 /// K in div(K grad u); empty for 1.
 struct Coefficient {

@@ -213,7 +213,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
   app.add_option("MESH", options->input, "The mesh")->required();
   app.add_option("-o,--output", options->output, "Folder for the files; created if missing")
       ->required();
-  declare_operator_options(app, options->discretization);
+  declare_operator_options(app, options->discretization, std::nullopt);
   return [options](Session& session) { run(session, *options); };
 }
 

@@ -221,7 +221,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "File for the mesh with the fields u and gradient, and\n"
                  "error with --exact, or a view (.html); without it\n"
                  "nothing is written");
-  declare_operator_options(app, options->discretization);
+  declare_operator_options(app, options->discretization, Application::Poisson);
   return [options](Session& session) { run(session, *options); };
 }
 

@@ -9,11 +9,12 @@
 
 namespace carat::cli {
 
-void write_report_page(const Json& report, const std::filesystem::path& path) {
+void write_report_page(Json report, const std::filesystem::path& path) {
   constexpr std::string_view title_mark = "<!--carat:title-->", data_mark = "<!--carat:data-->";
   const std::string_view page = detail::report_template();
   const std::size_t title_at = page.find(title_mark), data_at = page.find(data_mark);
   const std::size_t middle = title_at + title_mark.size();
+  report["viewer"] = detail::viewer_template();
   std::string data = report.dump();
   // Nothing in it may end the script element.
   for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos;)

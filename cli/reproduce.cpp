@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
 
 #include "carat/base/atomic_file.h"
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
 #include "carat/generators/families.h"
+#include "carat/report/page_blocks.h"
 #include "cli/command.h"
 #include "cli/experiments/experiment.h"
 #include "cli/figures.h"
@@ -22,9 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A scanned rabbit: in Debian's package glmark2-data.
+constexpr const char* kModel = "/usr/share/glmark2/models/bunny.obj";
+
 struct Options {
   std::vector<std::string> names;
-  std::string directory;
+  std::string directory, model = kModel;
   std::optional<int> levels;
   bool quick = false, fresh = false;
 };
@@ -193,8 +198,7 @@ Json to_json(const Experiment& experiment, const std::vector<Json>& rows, double
             {"seconds", seconds},
             {"columns", Json::array()},
             {"rows", Json::array()},
-            {"figures", experiment.figures()},
-            {"meshes", Json::array()}};
+            {"figures", experiment.figures()}};
   for (const ExperimentColumn& column : experiment.columns)
     json["columns"].push_back({{"name", column.name},
                                {"title", column.title},
@@ -242,10 +246,57 @@ std::vector<const Experiment*> chosen(const std::vector<std::string>& names) {
   return list;
 }
 
+/// What the figures of kind "picture" show; nothing if it cannot be made, which a case has said.
+std::vector<ViewItem> pictures_of(const Experiment& experiment, const Extent& extent) {
+  if (experiment.pictures == nullptr) return {};
+  try {
+    return experiment.pictures(extent);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// The families that an experiment measures on, at a level at which one sees their faces.
+std::vector<ViewItem> family_meshes(const std::vector<Json>& rows) {
+  constexpr int kFinestSurface = 2, kFinestVolume = 1;
+  std::vector<ViewItem> items;
+  std::set<std::string> seen;
+  for (const Json& row : rows) {
+    const auto found = row.find("family");
+    if (found == row.end() || !seen.insert(*found).second) continue;
+    const std::string family = *found;
+    const bool volume = family.rfind("cube-", 0) == 0 || family.rfind("ball-", 0) == 0;
+    const int level = std::min(row.at("level").get<int>(), volume ? kFinestVolume : kFinestSurface);
+    const FamilyOptions options{.level = level};
+    if (volume)
+      items.push_back({family, VolumeData{generate_volume(family, options), {}}});
+    else
+      items.push_back({family, SurfaceData{generate_mesh(family, options), {}}});
+  }
+  return items;
+}
+
+/// A file's bytes as the address of an image.
+std::string image_address(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  return "data:image/png;base64," +
+         detail::base64({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+/// What the page shows beyond the data: meshes and pictures.
+Json with_views(Json experiment, const std::vector<ViewItem>& items, const fs::path& directory) {
+  if (!items.empty()) experiment["view"] = html_view_data(items, "Meshes");
+  for (Json& figure : experiment["figures"])
+    if (figure["kind"] == "picture")
+      figure["image"] = image_address(directory / (figure["id"].get<std::string>() + ".png"));
+  return experiment;
+}
+
 void run(Session& session, const Options& options) {
   const fs::path directory = options.directory;
   const Cache cache(directory / "cache", options.fresh);
-  const Extent extent{options.levels, options.quick, session.threads()};
+  const Extent extent{options.levels, options.quick, session.threads(), options.model};
   const std::vector<const Experiment*> list = chosen(options.names);
   std::vector<std::vector<ExperimentCase>> cases;
   std::size_t n_cases = 0;
@@ -263,6 +314,7 @@ void run(Session& session, const Options& options) {
                 {"threads", resolve_threads(session.threads())}}}};
   Json report = header;
   report["experiments"] = Json::array();
+  Json shown = Json::array();
   Counts counts;
   double all_seconds = 0;
   Progress progress(n_cases);
@@ -272,19 +324,27 @@ void run(Session& session, const Options& options) {
     const std::vector<Json> rows =
         run_cases(session, experiment, cases[k], cache, progress, counts, seconds);
     all_seconds += seconds;
-    const Json result = to_json(experiment, rows, seconds);
+    Json result = to_json(experiment, rows, seconds);
+    std::vector<ViewItem> items = pictures_of(experiment, extent);
+    if (items.empty())
+      std::erase_if(result["figures"].get_ref<Json::array_t&>(),
+                    [](const Json& figure) { return figure["kind"] == "picture"; });
     Json alone = header;
     alone["seconds"] = seconds;
     alone["experiments"] = Json::array({result});
     write_text(directory / (std::string(experiment.name) + ".json"), alone.dump(1) + "\n");
     write_text(directory / (std::string(experiment.name) + ".csv"), to_csv(result));
-    write_figures(result, directory.string());
-    report["experiments"].push_back(result);
+    write_figures(result, directory.string(), items);
+    if (items.empty()) items = family_meshes(rows);
+    shown.push_back(with_views(result, items, directory));
+    report["experiments"].push_back(std::move(result));
     session.say(std::string(experiment.name) + ": " + count(std::ssize(rows), "row"));
   }
   report["seconds"] = all_seconds;
   write_text(directory / "report.json", report.dump(1) + "\n");
-  write_report_page(report, directory / "report.html");
+  Json page = report;
+  page["experiments"] = std::move(shown);
+  write_report_page(std::move(page), directory / "report.html");
   Json summary = Json::array();
   for (const Json& experiment : report["experiments"])
     summary.push_back({{"name", experiment["name"]},
@@ -312,6 +372,10 @@ std::function<void(Session&)> declare(CLI::App& app) {
   app.add_option("--levels", options->levels,
                  "Number of refinement levels of experiments that refine")
       ->check(CLI::Range(1, 8));
+  app.add_option("--model", options->model,
+                 "Surface of the experiments with pictures; its triangles\n"
+                 "are made into polygons")
+      ->capture_default_str();
   app.add_flag("--quick", options->quick, "Coarse meshes: all experiments in two minutes");
   app.add_flag("--fresh", options->fresh, "Measure again what the folder's cache holds");
   return [options](Session& session) { run(session, *options); };

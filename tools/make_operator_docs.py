@@ -158,8 +158,12 @@ def card(entry, picture, n_entries, family):
     claims, text = entry["claims"], entry["card"]
     kept = [words for claim, words in PROMISES.items() if claims[claim]]
     denied = [words for claim, words in DENIALS.items() if not claims[claim]]
-    default = " (the default)" if entry["default"] else ""
-    lines = [f"### {entry['name']}{default}", "", f"{entry['title']}.", "",
+    uses = []
+    for use in entry["default_of"]:
+        more = [f"--{name} {use[name]}" for name in ["mass", "theta"] if name in use]
+        uses.append(f"`carat {use['command']}`" + (f" (with `{' '.join(more)}`)" if more else ""))
+    default = f" The default of {', '.join(uses)}." if uses else ""
+    lines = [f"### {entry['name']}", "", f"{entry['title']}.{default}", "",
              f"![Row of one vertex: {entry['name']}]({picture})", "",
              f"- **Definition.** {text['definition']}",
              f"- **Meshes.** {'triangles or tetrahedra only' if claims['simplices_only'] else 'any'}",

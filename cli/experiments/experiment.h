@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "carat/report/html_view.h"
 #include "cli/session.h"
 
 namespace carat::cli {
@@ -16,6 +17,7 @@ struct Extent {
   std::optional<int> levels;  ///< number of refinement levels; default: the experiment's own
   bool quick = false;         ///< coarse meshes: everything in two minutes
   int threads = 0;
+  std::string model;  ///< file of the surface of the experiments with pictures
 
   /// Levels to measure: `first`, and as many as are asked for.
   std::vector<int> levels_from(int first, int n_full, int n_quick) const;
@@ -45,6 +47,8 @@ struct Experiment {
   std::vector<ExperimentCase> (*plan)(const Extent& extent);
   /// Columns that compare rows with each other; may be null.
   void (*finish)(std::vector<Json>& rows);
+  /// What the figures of kind "picture" show: surfaces with one field each; may be null.
+  std::vector<ViewItem> (*pictures)(const Extent& extent) = nullptr;
 };
 
 #define CARAT_EXPERIMENT(name) extern const Experiment name##_experiment;

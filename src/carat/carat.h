@@ -6,6 +6,7 @@
 #include "carat/apps/heat_geodesics.h"
 #include "carat/apps/mean_curvature.h"
 #include "carat/apps/poisson.h"
+#include "carat/apps/recommended.h"
 #include "carat/base/error.h"
 #include "carat/generators/families.h"
 #include "carat/mesh/fields.h"

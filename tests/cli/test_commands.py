@@ -1,3 +1,4 @@
+import re
 """What every command does when all is well."""
 
 import os
@@ -7,6 +8,19 @@ from support import PROGRAM, CaratTest, main
 
 APPS = ["curvature", "geodesics", "poisson", "eigen"]
 COMMANDS = ["info", *APPS, "operators", "view", "convert", "generate", "list"]
+
+# Kind -> command, operator, mass, theta where they are not the operator's own.
+DEFAULTS = {
+    "surface": [("curvature", "diamond", "lumped", None),
+                ("eigen", "stabilized_diamond", "moment-exact", None),
+                ("geodesics", "stabilized_diamond", None, 0.8),
+                ("operators", "diamond", None, None),
+                ("poisson", "stabilized_diamond", None, None)],
+    "volume": [("eigen", "stabilized_diamond", None, None),
+               ("geodesics", "diamond", None, None),
+               ("operators", "diamond", None, None),
+               ("poisson", "diamond", None, None)],
+}
 
 
 class Help(CaratTest):
@@ -34,15 +48,50 @@ class Help(CaratTest):
         names = {kind: [o["name"] for o in operators if o["kind"] == kind]
                  for kind in ["surface", "volume"]}
         for kind, of_kind in names.items():
-            default = [o["name"] for o in operators if o["kind"] == kind and o["default"]]
-            self.assertEqual(default, of_kind[:1])
+            uses = [(use["command"], o["name"], use.get("mass"), use.get("theta"))
+                    for o in operators if o["kind"] == kind for use in o["default_of"]]
+            self.assertEqual(sorted(uses), DEFAULTS[kind])
+            self.assertEqual(uses[0], ("operators", of_kind[0], None, None))
         both = list(dict.fromkeys(names["surface"] + names["volume"]))
         for command in APPS + ["operators"]:
             choices = names["surface"] if command == "curvature" else both
             text = self.succeed(command, "--help")
-            self.assertIn("NAME=" + choices[0], text)
+            for kind in DEFAULTS:
+                for use, name, mass, theta in DEFAULTS[kind]:
+                    if use != command:
+                        continue
+                    words = name + (f", mass {mass}" if mass else "")
+                    words += f", theta {theta}" if theta else ""
+                    before = "in volumes " if kind == "volume" else "Default: "
+                    self.assertIn(before + words, re.sub(r"\s+", " ", text))
             for name in choices:
                 self.assertRegex(text, rf"(Surfaces|volumes):\s[\w\s,]*\b{name}\b")
+
+
+class DefaultOperators(CaratTest):
+    """What the commands take where no operator is named."""
+
+    def test_every_command_takes_its_own(self):
+        self.generate("sphere-hexagons", 1, "surface.ply")
+        self.generate("cube-voronoi", 0, "volume.vtu")
+        for kind, mesh in [("surface", "surface.ply"), ("volume", "volume.vtu")]:
+            for command, name, mass, theta in DEFAULTS[kind]:
+                more = {"geodesics": ["--source", 0], "eigen": ["-k", 2],
+                        "poisson": ["--rhs", "0"], "operators": ["-o", "out"]}.get(command, [])
+                bare = self.report(command, mesh, *more)["options"]
+                self.assertEqual(bare["operator"], name)
+                if mass:
+                    self.assertEqual(bare["mass"], mass)
+                if theta:
+                    self.assertEqual(bare["theta"], theta)
+                # Who names an operator gets it as it is; who names an option gets that one.
+                named = self.report(command, mesh, *more, "--operator", "diamond")["options"]
+                self.assertEqual((named["operator"], named["mass"]), ("diamond", "full"))
+                full = self.report(command, mesh, *more, "--mass", "full")["options"]
+                self.assertEqual((full["operator"], full["mass"]), (name, "full"))
+                if name == "stabilized_diamond":
+                    other = self.report(command, mesh, *more, "--theta", 0.5)["options"]
+                    self.assertEqual(other["theta"], 0.5)
 
 
 class List(CaratTest):
@@ -156,7 +205,7 @@ class Reports(CaratTest):
     def test_options_reach_the_operator(self):
         self.generate("sphere-concave", 0, "concave.ply")
         plain = self.report("curvature", "concave.ply")
-        for arguments in [["--operator", "bunge"], ["--lumped"], ["--virtual-point", "centroid"],
+        for arguments in [["--operator", "bunge"], ["--mass", "full"], ["--virtual-point", "centroid"],
                           ["--virtual-point", "trace"], ["--weights", "minimum-norm"]]:
             other = self.report("curvature", "concave.ply", *arguments)
             self.assertNotEqual(other["options"], plain["options"])

@@ -96,6 +96,51 @@ class Reproduce(CaratTest):
         n = report["sizes"]["vertices"]
         return report["errors"]["rmse"] * math.sqrt(n / (n - report["sizes"]["dirichlet_vertices"]))
 
+    def test_pictures(self):
+        """One surface by other faces over the same vertices."""
+        self.generate("sphere-hexagons", 2, "model.ply")
+        report = self.reproduce("curvature-picture", "geodesics-picture", "--model", "model.ply")
+        self.assertEqual(report["cases"]["failed"], 0)
+        curvature = self.rows("curvature-picture")
+        sizes = self.report("info", "model.ply")["sizes"]
+        for row in curvature:
+            self.assertEqual(int(row["vertices"]), sizes["vertices"])
+            if row["tessellation"] == "polygons":
+                self.assertEqual(int(row["faces"]), sizes["faces"])
+                self.assertEqual(float(row["max_difference"]), 0)
+                options = ["--operator", row["operator"], "--mass", row["mass"]]
+                options += ["--theta", row["theta"]] if row["theta"] else []
+                H = self.report("curvature", "model.ply", *options)["mean_curvature"]
+                self.assertAlmostEqual(max(abs(H["max"]), abs(H["min"])) / float(row["max"]), 1,
+                                       delta=1e-9)
+            else:
+                self.assertEqual(row["tessellation"], "triangles")
+                self.assertEqual(int(row["faces"]), 2 * (sizes["vertices"] - 2))
+                self.assertTrue(0 < float(row["max_difference"]) < 10)
+        distances = self.rows("geodesics-picture")
+        for row in distances:
+            self.assertLess(abs(float(row["max"]) - math.pi), 0.3)
+            self.assertLess(float(row["relative"]), 0.1)
+            if row["tessellation"] == "quads":
+                triangles = 2 * (sizes["vertices"] - 2)
+                self.assertTrue(triangles / 2 <= int(row["faces"]) < 0.7 * triangles)
+        for name in ["curvature-picture", "geodesics-picture"]:
+            self.assertGreater((self.folder / f"out/{name}.png").stat().st_size, 30000)
+            self.assertIn("<svg", (self.folder / f"out/{name}.svg").read_text()[:300])
+        # A model triangulated already is made into polygons.
+        self.succeed("convert", "model.ply", "triangles.ply", "--triangulate")
+        self.reproduce("geodesics-picture", "--model", "triangles.ply")
+        for row in self.rows("geodesics-picture"):
+            self.assertEqual(int(row["vertices"]), 2 * (sizes["vertices"] - 2))
+
+    def test_a_model_that_cannot_be_read(self):
+        report = self.reproduce("curvature-picture", "--model", "nowhere.ply")
+        self.assertEqual(report["cases"]["failed"], len(self.rows("curvature-picture")))
+        for note in report["notes"]:
+            self.assertIn("pass a surface with --model", note)
+        self.assertFalse((self.folder / "out/curvature-picture.png").exists())
+        self.assertTrue((self.folder / "out/report.html").exists())
+
     def test_list(self):
         listed = self.report("list", "experiments")["experiments"]
         names = [experiment["name"] for experiment in listed]

@@ -2,10 +2,13 @@
 #include <vtkNew.h>
 #include <vtkXMLParser.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "carat/base/error.h"
+#include "cli/figure_render.h"
 #include "cli/figures.h"
 #include "sample_experiment.h"
 
@@ -118,6 +121,60 @@ TEST_F(Figures, in_a_folder_that_cannot_be_written_are_an_error) {
   std::ofstream(folder / "file") << "text";
   EXPECT_THROW(write_figures(experiment, (folder / "file").string()), IoError);
   EXPECT_EQ(n_files(), 1);
+}
+
+/// Two squares that face the eye of render(), the one of value 1 in front of the upper half of the
+/// one of value 0.
+TEST(Render, nearer_faces_hide_others_and_values_become_colours) {
+  const Vec3 eye =
+      Vec3(std::sin(0.45) * std::cos(0.3), std::sin(0.3), std::cos(0.45) * std::cos(0.3));
+  const Vec3 right = Vec3::UnitY().cross(eye).normalized(), up = eye.cross(right);
+  Points points(8, 3);
+  const double corners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  for (int k = 0; k < 4; ++k) {
+    points.row(k) = corners[k][0] * right + corners[k][1] * up;
+    points.row(4 + k) = corners[k][0] * right + (corners[k][1] + 1) / 2 * up + 0.5 * eye;
+  }
+  Vector values(8);
+  values << 0, 0, 0, 0, 1, 1, 1, 1;
+  const ColorScale scale{0, 1};
+  const auto value_of = [](Color color) { return color.red + color.green + color.blue; };
+  EXPECT_GT(value_of(scale.at(1)), value_of(scale.at(0.5)));
+  EXPECT_EQ(value_of(scale.at(7)), value_of(scale.at(1)));
+  EXPECT_EQ(value_of(scale.at(-7)), value_of(scale.at(0)));
+  for (const bool front_first : {false, true}) {
+    const std::vector<std::vector<Index>> faces{{0, 1, 2, 3}, {4, 5, 6, 7}};
+    const auto mesh =
+        PolygonMesh::from_faces(points, front_first ? std::vector{faces[1], faces[0]} : faces);
+    const Image image = render(mesh, values, scale, 40, 40);
+    ASSERT_EQ(image.pixels.size(), 1600u);
+    const auto pixel = [&](int x, int y) {
+      return image.pixels[static_cast<std::size_t>(40 * y + x)];
+    };
+    EXPECT_EQ(pixel(20, 10), 0xfde725u);
+    EXPECT_EQ(pixel(20, 30), 0x440154u);
+    EXPECT_EQ(pixel(0, 0), 0xffffffu);
+  }
+  // A line in the middle of a ramp, and none where the value does not pass one.
+  values << 0, 1, 1, 0, 0, 0, 0, 0;
+  const auto square = PolygonMesh::from_faces(points, {{0, 1, 2, 3}});
+  const Image lines = render(square, values, {0, 1, 2}, 40, 40);
+  EXPECT_LT(lines.pixels[20 * 40 + 20] >> 8 & 255, 0x60u);
+  EXPECT_GT(lines.pixels[20 * 40 + 25] >> 8 & 255, 0x80u);
+}
+
+TEST_F(Figures, show_surfaces_where_there_are_some) {
+  Json experiment = sample_experiment(2, 2, 2);
+  experiment["figures"] = {{{"id", "surfaces"}, {"title", "A picture"}, {"kind", "picture"}}};
+  write_figures(experiment, folder.string());
+  EXPECT_EQ(n_files(), 0);
+  Points points(3, 3);
+  points << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  SurfaceData data{PolygonMesh::from_faces(points, {{0, 1, 2}}), {}};
+  data.fields.vertex = {{"height_above", 1, {0, 1, 2}}};
+  write_figures(experiment, folder.string(), {{"one", data}, {"two", data}});
+  EXPECT_EQ(n_files(), 2);
+  EXPECT_EQ(check_files("surfaces").first, 1800);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ const checks = {
       if (!figure.slopes) continue;
       const rows = rowsOf({ experiment, figure });
       const panel = at(figure).locator('.panels > figure').first();
-      const name = await panel.locator('figcaption').innerText();
+      const name = await panel.locator('figcaption span').innerText();
       for (const item of await panel.locator('.slopes span').all()) {
         const series = await item.getAttribute('data-series');
         const points = rows
@@ -140,6 +140,42 @@ const checks = {
     const png = await saved(at(figure).locator('.actions button:has-text("PNG")'));
     assert.equal(png.toString('latin1', 1, 4), 'PNG');
     assert.ok(png.length > 10000);
+  },
+  async 'shows the meshes in 3-D beside the curves'() {
+    for (const experiment of report.experiments) {
+      const column = experiment.columns.findIndex(({ name }) => name === 'family');
+      const expected =
+        column >= 0
+          ? distinct(experiment.rows.map((row) => row[column]))
+          : distinct(experiment.rows.map((row) => row[experiment.columns.findIndex(
+              ({ name }) => name === 'tessellation',
+            )]));
+      const place = page.locator(`#${experiment.name} .meshes`);
+      await place.scrollIntoViewIfNeeded();
+      const frame = place.frameLocator('iframe');
+      await frame.locator('html[data-state=ready]').waitFor({ state: 'attached', timeout: 60000 });
+      const choices = frame.locator('#meshes button, #meshes option');
+      assert.deepEqual(await choices.allTextContents(), expected, experiment.name);
+      const drawn = await frame.locator('#canvas').evaluate((canvas) => canvas.width > 100);
+      assert.ok(drawn);
+      // As many 3-D views as are near the window, not one an experiment.
+      assert.ok((await page.locator('.meshes iframe').count()) < 5);
+    }
+  },
+  async 'shows the mesh of a panel'() {
+    const [{ experiment, figure }] = ofKind('lines');
+    const panel = at(figure).locator('.panels > figure').nth(1);
+    const family = await panel.locator('figcaption span').innerText();
+    await panel.locator('figcaption button').click();
+    const frame = page.locator(`#${experiment.name} .meshes`).frameLocator('iframe');
+    await frame.locator(`#info:has-text("${family}")`).waitFor({ state: 'attached' });
+  },
+  async 'shows the pictures'() {
+    const pictures = ofKind('picture');
+    for (const { figure } of pictures) {
+      const image = at(figure).locator('img');
+      assert.ok((await image.evaluate((element) => element.naturalWidth)) > 800);
+    }
   },
   async 'light and dark'() {
     const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);

@@ -79,7 +79,8 @@ using VolumeOperator = OperatorEntry<PolyhedralMesh>;
 /// "full", "moment-exact", "lumped", "voronoi", "default".
 const char* mass_kind_name(MassKind kind);
 
-/// In the order of operators.def; the first is the default.
+/// In the order of operators.def; the first is the one whose matrices are given where none is
+/// named.
 const std::vector<const SurfaceOperator*>& surface_operators();
 const std::vector<const VolumeOperator*>& volume_operators();
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -240,6 +241,19 @@ void check_item(const VolumeData& data, const std::string& title) {
                             ", but the mesh has " + std::to_string(data.mesh.n_faces()) + " faces");
 }
 
+void write_data(std::ostream& out, const std::vector<ViewItem>& items, const std::string& title) {
+  detail::BlockWriter blocks(out);
+  json description = {{"title", title}, {"items", json::array()}};
+  for (const ViewItem& item : items) description["items"].push_back(write_item(item, blocks));
+  out << "<script type=\"application/json\" id=\"description\">" << script_json(description)
+      << "</script>";
+}
+
+void check_items(const std::vector<ViewItem>& items) {
+  for (const ViewItem& item : items)
+    std::visit([&](const auto& data) { check_item(data, item.title); }, item.data);
+}
+
 void write_page(std::ostream& out, const std::vector<ViewItem>& items, const std::string& title) {
   constexpr std::string_view title_mark = "<!--carat:title-->";
   constexpr std::string_view data_mark = "<!--carat:data-->";
@@ -248,11 +262,8 @@ void write_page(std::ostream& out, const std::vector<ViewItem>& items, const std
   const std::size_t data_at = page.find(data_mark);
   const std::size_t middle = title_at + title_mark.size();
   out << page.substr(0, title_at) << escape_html(title) << page.substr(middle, data_at - middle);
-  detail::BlockWriter blocks(out);
-  json description = {{"title", title}, {"items", json::array()}};
-  for (const ViewItem& item : items) description["items"].push_back(write_item(item, blocks));
-  out << "<script type=\"application/json\" id=\"description\">" << script_json(description)
-      << "</script>" << page.substr(data_at + data_mark.size());
+  write_data(out, items, title);
+  out << page.substr(data_at + data_mark.size());
 }
 
 }  // namespace
@@ -261,14 +272,20 @@ void write_html_view(const std::filesystem::path& path, const std::vector<ViewIt
                      const std::string& title) {
   if (items.empty())
     throw InvalidOption(path.string() + ": no mesh to show; pass at least one item");
-  for (const ViewItem& item : items)
-    std::visit([&](const auto& data) { check_item(data, item.title); }, item.data);
+  check_items(items);
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);
     write_page(out, items, title);
     out.close();
     if (!out) throw IoError(path.string() + ": cannot be written completely; is the disk full?");
   });
+}
+
+std::string html_view_data(const std::vector<ViewItem>& items, const std::string& title) {
+  check_items(items);
+  std::ostringstream out;
+  write_data(out, items, title);
+  return out.str();
 }
 
 }  // namespace carat

@@ -22,4 +22,9 @@ struct ViewItem {
 void write_html_view(const std::filesystem::path& path, const std::vector<ViewItem>& items,
                      const std::string& title = "carat");
 
+/// What such a page holds beside its program, for pages that show it in a frame: HTML elements
+/// that stand in the viewer's template for its data.
+/// \throws InvalidOption  as above
+std::string html_view_data(const std::vector<ViewItem>& items, const std::string& title);
+
 }  // namespace carat

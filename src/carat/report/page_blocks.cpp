@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -101,6 +102,14 @@ std::vector<std::uint8_t> byte_planes(std::size_t n, const Word& word) {
 }
 
 }  // namespace
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+  std::ostringstream out;
+  Base64Stream stream(out);
+  stream.put(bytes);
+  stream.finish();
+  return out.str();
+}
 
 int BlockWriter::write_bytes(std::span<const std::uint8_t> bytes) {
   out_ << "<script type=\"application/octet-stream\" id=\"block-" << n_blocks_ << "\">";

@@ -5,8 +5,12 @@
 #include <cstdint>
 #include <ostream>
 #include <span>
+#include <string>
 
 namespace carat::detail {
+
+/// Bytes as base64, on one line.
+std::string base64(std::span<const std::uint8_t> bytes);
 
 /// Writes numbered <script type="application/octet-stream" id="block-N"> elements.
 class BlockWriter {

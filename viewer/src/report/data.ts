@@ -35,7 +35,12 @@ export interface TableFigure extends FigureBase {
   kind: 'table';
   columns: string[];
 }
-export type Figure = LinesFigure | MatrixFigure | TableFigure;
+export interface PictureFigure extends FigureBase {
+  kind: 'picture';
+  /** A data address. */
+  image: string;
+}
+export type Figure = LinesFigure | MatrixFigure | TableFigure | PictureFigure;
 
 export interface Experiment {
   name: string;
@@ -47,6 +52,8 @@ export interface Experiment {
   columns: Column[];
   rows: Cell[][];
   figures: Figure[];
+  /** Its meshes: elements for the viewer's page. */
+  view?: string;
 }
 
 export interface Report {
@@ -55,6 +62,8 @@ export interface Report {
   seconds: number;
   options: { levels: number | null; quick: boolean; threads: number };
   experiments: Experiment[];
+  /** The page of `carat view`, without data. */
+  viewer: string;
 }
 
 export type Row = Record<string, Cell>;

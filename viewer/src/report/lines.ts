@@ -46,7 +46,12 @@ function tipText(point: Point, experiment: Experiment): string {
     .join('\n');
 }
 
-export function drawLines(experiment: Experiment, figure: LinesFigure): HTMLElement {
+/** \param showMesh  shows the mesh of a family, where families are the panels */
+export function drawLines(
+  experiment: Experiment,
+  figure: LinesFigure,
+  showMesh: ((family: string) => void) | null,
+): HTMLElement {
   const container = document.createElement('div');
   const rows = rowsOf(experiment, figure);
   const all = pointsOf(rows, figure);
@@ -87,7 +92,15 @@ export function drawLines(experiment: Experiment, figure: LinesFigure): HTMLElem
           (point) =>
             isShown(point.series) && (figure.panel === null || point.row[figure.panel] === panel),
         );
-        return drawPanel(experiment, figure, panel === null ? '' : String(panel), here, all);
+        const drawn = drawPanel(experiment, figure, panel === null ? '' : String(panel), here, all);
+        if (showMesh && figure.panel === 'family') {
+          const button = document.createElement('button');
+          button.textContent = '3-D';
+          button.title = 'Show the mesh';
+          button.addEventListener('click', () => showMesh(String(panel)));
+          drawn.querySelector('figcaption')!.append(' ', button);
+        }
+        return drawn;
       }),
     );
   };
@@ -106,7 +119,9 @@ function drawPanel(
 ): HTMLElement {
   const panel = document.createElement('figure');
   const heading = document.createElement('figcaption');
-  heading.textContent = title;
+  const name = document.createElement('span');
+  name.textContent = title;
+  heading.append(name);
   const axis = (name: string, scale: 'log' | 'linear', values: number[]): Plot.ScaleOptions => ({
     type: scale,
     domain: extent(values),

@@ -1,8 +1,9 @@
 import './report.css';
 import { toggleTheme } from '../theme';
 import { toCsv } from './data';
-import type { Experiment, Figure, Report } from './data';
+import type { Experiment, Figure, PictureFigure, Report } from './data';
 import { drawLines } from './lines';
+import { MeshFrame } from './meshes';
 import { save, savePng, saveSvg } from './save';
 import { drawMatrix, drawTable } from './tables';
 
@@ -24,16 +25,29 @@ function button(text: string, title: string, clicked: () => void): HTMLButtonEle
   return made;
 }
 
-function draw(experiment: Experiment, figure: Figure): HTMLElement {
+function drawPicture(figure: PictureFigure): HTMLElement {
+  const picture = element('img', '', 'picture');
+  picture.src = figure.image;
+  picture.alt = figure.title;
+  return picture;
+}
+
+function draw(
+  experiment: Experiment,
+  figure: Figure,
+  meshes: MeshFrame | null,
+): HTMLElement {
   const section = element('section', '', 'figure');
   section.dataset['figure'] = figure.id;
   section.append(element('h3', figure.title));
   const drawing =
     figure.kind === 'lines'
-      ? drawLines(experiment, figure)
+      ? drawLines(experiment, figure, meshes && ((family) => meshes.show(family)))
       : figure.kind === 'matrix'
         ? drawMatrix(experiment, figure)
-        : drawTable(experiment, figure);
+        : figure.kind === 'table'
+          ? drawTable(experiment, figure)
+          : drawPicture(figure);
   section.append(drawing);
   if (figure.caption) section.append(element('p', figure.caption, 'caption'));
   if (figure.kind === 'lines') {
@@ -47,7 +61,7 @@ function draw(experiment: Experiment, figure: Figure): HTMLElement {
   return section;
 }
 
-function drawExperiment(experiment: Experiment): HTMLElement {
+function drawExperiment(experiment: Experiment, meshes: MeshFrame | null): HTMLElement {
   const article = element('article');
   article.id = experiment.name;
   const heading = element('h2', experiment.title);
@@ -62,7 +76,12 @@ function drawExperiment(experiment: Experiment): HTMLElement {
     ),
   );
   article.append(heading, element('p', experiment.text), command);
-  for (const figure of experiment.figures) article.append(draw(experiment, figure));
+  const body = element('div', '', 'body');
+  const figures = element('div', '', 'figures');
+  for (const figure of experiment.figures) figures.append(draw(experiment, figure, meshes));
+  body.append(figures);
+  if (meshes) body.append(meshes.element);
+  article.append(body);
   return article;
 }
 
@@ -86,17 +105,23 @@ if (data) {
   const contents = document.getElementById('contents')!;
   const experiments = document.getElementById('experiments')!;
   const header = element('header');
+  const frames: MeshFrame[] = [];
   header.append(
     element('h1', document.title),
     element('p', describe(report)),
-    button('light / dark', 'Light or dark', toggleTheme),
+    button('light / dark', 'Light or dark', () => {
+      toggleTheme();
+      for (const frame of frames) frame.restyle();
+    }),
   );
   experiments.append(header);
   for (const experiment of report.experiments) {
     const link = element('a', experiment.title);
     link.href = `#${experiment.name}`;
     contents.append(link);
-    experiments.append(drawExperiment(experiment));
+    const meshes = experiment.view ? new MeshFrame(report.viewer, experiment) : null;
+    if (meshes) frames.push(meshes);
+    experiments.append(drawExperiment(experiment, meshes));
   }
   document.documentElement.dataset['state'] = 'ready';
 }

@@ -25,7 +25,7 @@ export function figureSvg(figure: HTMLElement): SVGSVGElement {
     const x = (k % 2) * (w + GAP);
     const y = Math.floor(k / 2) * (h + TITLE + GAP);
     const title = make('text');
-    title.textContent = panel.querySelector('figcaption')!.textContent;
+    title.textContent = panel.querySelector('figcaption span')!.textContent;
     title.setAttribute('x', String(x + w / 2));
     title.setAttribute('y', String(y + TITLE - 6));
     title.setAttribute('text-anchor', 'middle');
