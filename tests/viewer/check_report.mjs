@@ -68,8 +68,8 @@ const checks = {
         const points = rows
           .filter((row) => row[figure.panel] === name && seriesOf(figure, row) === series)
           .map((row) => [Math.log(row[figure.x]), Math.log(row[figure.y])]);
-        assert.equal(points.length, 3, 'all points of a curve');
-        const mean = (k) => points.reduce((sum, point) => sum + point[k], 0) / 3;
+        assert.ok(points.length === 2 || points.length === 3, 'all points of a curve');
+        const mean = (k) => points.reduce((sum, point) => sum + point[k], 0) / points.length;
         const [x, y] = [mean(0), mean(1)];
         const slope =
           points.reduce((sum, point) => sum + (point[0] - x) * (point[1] - y), 0) /
@@ -113,7 +113,7 @@ const checks = {
     }
   },
   async 'sorts tables'() {
-    const [{ experiment, figure }] = ofKind('table');
+    const { experiment, figure } = ofKind('table').find(({ figure }) => figure.columns.includes('nnz'));
     const column = figure.columns.indexOf('nnz');
     const header = at(figure).locator('th').nth(column);
     const top = () => at(figure).locator('tbody tr').first().locator('td').nth(column).innerText();

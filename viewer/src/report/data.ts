@@ -24,6 +24,7 @@ export interface LinesFigure extends FigureBase {
   x_scale: 'log' | 'linear';
   y_scale: 'log' | 'linear';
   slopes: boolean;
+  references: { label: string; slope: number }[];
 }
 export interface MatrixFigure extends FigureBase {
   kind: 'matrix';

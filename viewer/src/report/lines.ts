@@ -130,6 +130,11 @@ function drawPanel(
     grid: true,
     ...(scale === 'log' ? { tickFormat: '~g', ticks: 5 } : {}),
   });
+  const [low, high] = extent(all.map((point) => point.x));
+  const top = extent(all.map((point) => point.y))[1];
+  const references = figure.references.flatMap(({ label, slope }) =>
+    [low, high].map((x) => ({ label, x, y: top * (x / high) ** slope })),
+  );
   const order = [...points].sort((a, b) => a.x - b.x);
   const drawing = Plot.plot({
     width: 420,
@@ -145,6 +150,17 @@ function drawPanel(
     color: { domain: unique(points.map((p) => p.series)), range: unique(points.map((p) => p.series)).map(colorOf) },
     symbol: { domain: unique(points.map((p) => p.series)), range: unique(points.map((p) => p.series)).map(markerOf) },
     marks: [
+      Plot.line(references, {
+        x: 'x',
+        y: 'y',
+        z: 'label',
+        stroke: 'currentColor',
+        strokeOpacity: 0.5,
+        strokeDasharray: '3 4',
+        clip: true,
+        className: 'references',
+        title: 'label',
+      }),
       Plot.line(order, { x: 'x', y: 'y', z: 'series', stroke: 'series', strokeWidth: 1.5, className: 'curves' }),
       Plot.dot(order, { x: 'x', y: 'y', fill: 'series', symbol: 'series', r: 3.5 }),
       Plot.tip(
