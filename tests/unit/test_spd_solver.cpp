@@ -2,8 +2,11 @@
 
 #include <limits>
 
+#include "carat/apps/poisson.h"
 #include "carat/base/error.h"
+#include "carat/generators/families.h"
 #include "carat/operators/registry.h"
+#include "carat/solve/conjugate_gradients.h"
 #include "carat/solve/spd_solver.h"
 #include "support/measures.h"
 #include "support/meshes.h"
@@ -70,6 +73,55 @@ TEST(SpdSolver, wrong_sizes_and_values_are_refused) {
   Vector rhs = Vector::Zero(a.rows());
   rhs[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(solver.solve(rhs), SolverFailure);
+}
+
+TEST(ConjugateGradients, agree_with_the_factorisation) {
+  const PolyhedralMesh mesh = generate_volume("cube-voronoi", {.level = 1, .jitter = 0.2});
+  const Discretization d = discretize(mesh, "diamond");
+  std::vector<bool> fixed(static_cast<std::size_t>(mesh.n_vertices()), false);
+  fixed[3] = fixed[40] = true;
+  Matrix rhs = Matrix::Random(mesh.n_vertices(), 3);
+  rhs.col(1).setZero();
+  const Matrix direct = SpdSolver(d.stiffness, fixed).solve(rhs);
+  const ConjugateGradients iterative(d.stiffness, fixed);
+  const Matrix solution = iterative.solve(rhs);
+  EXPECT_LT((solution - direct).norm(), 1e-9 * direct.norm());
+  EXPECT_EQ(solution.col(1).norm(), 0);
+  EXPECT_EQ(solution.row(40).norm(), 0);
+  EXPECT_GT(iterative.info().nonzeros, 0);
+}
+
+TEST(ConjugateGradients, never_give_a_wrong_answer) {
+  SparseMatrix a = spd();
+  a.coeffRef(3, 3) = -1;
+  EXPECT_THROW(ConjugateGradients{a}, SolverFailure);
+  // Indefinite with a positive diagonal.
+  SparseMatrix b(2, 2);
+  b.insert(0, 0) = b.insert(1, 1) = 1;
+  b.insert(0, 1) = b.insert(1, 0) = 2;
+  b.makeCompressed();
+  EXPECT_THROW(ConjugateGradients(b).solve(Vector{{1.0, -1.0}}), SolverFailure);
+  EXPECT_THROW(ConjugateGradients(spd()).solve(
+                   Vector::Constant(spd().rows(), std::numeric_limits<double>::quiet_NaN())),
+               SolverFailure);
+  EXPECT_THROW(ConjugateGradients(spd()).solve(Vector::Zero(3)), InvalidOption);
+}
+
+TEST(ConjugateGradients, solve_large_volumes) {
+  const PolyhedralMesh mesh = generate_volume("cube-hexahedra", {.level = 3, .jitter = 0.2});
+  BoundaryConditions conditions;
+  conditions.dirichlet_vertices = {0};
+  conditions.dirichlet_values = {2};
+  const Discretization d = discretize(mesh);
+  const Poisson poisson(mesh, d, conditions);
+  EXPECT_EQ(poisson.info().method.substr(0, 19), "conjugate gradients");
+  const Vector u = mesh.points() * Vec3(1, -2, 3);
+  Vector load = d.stiffness * u;
+  const PoissonSolution solution = poisson.solve_integrated(load);
+  const double shift = 2 - u[0];
+  EXPECT_LT((solution.values - u - Vector::Constant(u.size(), shift)).lpNorm<Eigen::Infinity>(),
+            1e-8);
+  EXPECT_LT(solution.relative_residual, 1e-10);
 }
 
 TEST(SemidefiniteSolver, works_in_the_complement_of_constants_of_each_component) {

@@ -16,6 +16,11 @@ namespace {
 // it is of the order of (h / diameter)^2.
 constexpr double kSingular = 1e-11;
 
+// Volumes of so many unknowns are solved by conjugate gradients: at 30 000 a factorisation takes 5
+// to 16 times as long (docs/performance.md). Smaller ones are factorised, for exact solutions at
+// any number of right-hand sides.
+constexpr Index kIterativeFrom = 20000;
+
 // A right-hand side that misses balance by more than this is a mistake, not discretisation error.
 constexpr double kImbalanceLimit = 0.1;
 
@@ -47,14 +52,14 @@ void append_zeros(BoundaryIntegrals& boundary, Index n) {
 
 Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
                  const BoundaryConditions& conditions)
-    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions) {}
+    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions, false) {}
 
 Poisson::Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
                  const BoundaryConditions& conditions)
-    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions) {}
+    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions, true) {}
 
 Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
-                 const BoundaryConditions& conditions)
+                 const BoundaryConditions& conditions, bool volume)
     : mass_(discretization.mass), boundary_load_(std::move(boundary.load)) {
   if (discretization.n_vertices() != boundary_load_.size())
     throw InvalidOption("the discretization has " + std::to_string(discretization.n_vertices()) +
@@ -81,7 +86,7 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
   fix_boundary_unknowns(discretization.extra, conditions);
 
   // A floating component is held at zero at its best determined vertex, and shifted afterwards.
-  std::vector<bool> held = fixed_;
+  held_ = fixed_;
   std::vector<Index> ground(floating_.size(), -1);
   const Vector diagonal = system_.diagonal();
   for (Index v = 0; v < n; ++v) {
@@ -90,7 +95,7 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
       ground[c] = v;
   }
   for (const Index v : ground)
-    if (v >= 0) held[v] = true;
+    if (v >= 0) held_[v] = true;
   const auto refuse_singular = [&] {
     throw SolverFailure("Poisson: with these boundary conditions the stiffness of the operator " +
                         discretization.name +
@@ -99,15 +104,23 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
                         "diamond");
   };
   if (discretization.extra.size() == 0) {
-    solver_ = std::make_unique<SpdSolver>(system_, held);
+    if (volume && n >= kIterativeFrom) {
+      try {
+        iterative_ = std::make_unique<ConjugateGradients>(system_, held_);
+        return;
+      } catch (const SolverFailure&) {
+        // The Cholesky factorisation judges, and names the row.
+      }
+    }
+    solver_ = std::make_unique<SpdSolver>(system_, held_);
     return;
   }
   try {
-    solver_ = std::make_unique<SpdSolver>(system_, held);
+    solver_ = std::make_unique<SpdSolver>(system_, held_);
   } catch (const SolverFailure&) {
     refuse_singular();
   }
-  if (lowest_eigenvalue(*solver_, held) <= kSingular * diagonal.maxCoeff()) refuse_singular();
+  if (lowest_eigenvalue(*solver_, held_) <= kSingular * diagonal.maxCoeff()) refuse_singular();
 }
 
 /// Unknowns on boundary faces and edges whose vertices all have Dirichlet data.
@@ -172,6 +185,15 @@ void Poisson::fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions&
   }
 }
 
+Vector Poisson::solve_system(const Vector& rhs) const {
+  if (!iterative_) return solver_->solve(rhs);
+  try {
+    return iterative_->solve(rhs);
+  } catch (const SolverFailure&) {
+    return SpdSolver(system_, held_).solve(rhs);
+  }
+}
+
 PoissonSolution Poisson::solve(const Vector& f) const {
   if (f.size() != system_.rows())
     throw InvalidOption(std::to_string(f.size()) + " values for " + std::to_string(system_.rows()) +
@@ -216,7 +238,7 @@ PoissonSolution Poisson::solve_integrated(const Vector& load) const {
       b[v] -= sum[c] / measure[c] * vertex_mass[v];
 
   const Vector lifted = b - system_ * fixed_values_;
-  solution.values = solver_->solve(lifted) + fixed_values_;
+  solution.values = solve_system(lifted) + fixed_values_;
 
   // Floating components: mean zero by mass.
   std::vector<double> mean(n_components, 0);

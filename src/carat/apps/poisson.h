@@ -6,6 +6,7 @@
 
 #include "carat/apps/boundary_conditions.h"
 #include "carat/operators/discretization.h"
+#include "carat/solve/conjugate_gradients.h"
 #include "carat/solve/spd_solver.h"
 
 namespace carat {
@@ -43,11 +44,14 @@ class Poisson {
   /// \param load  integrated right-hand side, e.g. mass * f
   PoissonSolution solve_integrated(const Vector& load) const;
 
-  const FactorInfo& info() const { return solver_->info(); }
+  /// Of the Cholesky factorisation, or in large volumes of the incomplete one of conjugate
+  /// gradients, which give way to the former where they do not converge.
+  const FactorInfo& info() const { return iterative_ ? iterative_->info() : solver_->info(); }
 
  private:
   Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
-          const BoundaryConditions& conditions);
+          const BoundaryConditions& conditions, bool volume);
+  Vector solve_system(const Vector& rhs) const;
   void fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions& conditions);
   void fix_boundary_unknowns(const ExtraUnknowns& extra, const BoundaryConditions& conditions);
 
@@ -57,8 +61,10 @@ class Poisson {
   std::vector<bool> fixed_;  // rows not solved for
   Vector fixed_values_;
   std::vector<Index> component_;
-  std::vector<bool> floating_;  // component -> has no Dirichlet and no Robin data
-  std::unique_ptr<SpdSolver> solver_;
+  std::vector<bool> floating_;         // component -> has no Dirichlet and no Robin data
+  std::vector<bool> held_;             // fixed_, and one vertex of each floating component
+  std::unique_ptr<SpdSolver> solver_;  // one of the two
+  std::unique_ptr<ConjugateGradients> iterative_;  // in large volumes
 };
 
 /// Deviation of u from a reference.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "carat/base/error.h"
+#include "carat/solve/reduction.h"
 
 #ifdef CARAT_WITH_CHOLMOD
 #include <cholmod.h>
@@ -20,38 +21,6 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-/// Rows that stay, and the lower triangle of the matrix over them: by rows ascending that is the
-/// upper triangle by columns.
-struct Reduction {
-  std::vector<Index> kept;        // reduced -> full
-  std::vector<Index> reduced_of;  // full -> reduced, -1: fixed
-  std::vector<Index> offsets, columns;
-  std::vector<Index> source;  // reduced entry -> position in the full matrix's values
-
-  Reduction(const SparseMatrix& matrix, const std::vector<bool>& fixed) {
-    const Index n = static_cast<Index>(matrix.rows());
-    reduced_of.assign(static_cast<std::size_t>(n), -1);
-    for (Index row = 0; row < n; ++row)
-      if (fixed.empty() || !fixed[static_cast<std::size_t>(row)]) {
-        reduced_of[row] = static_cast<Index>(kept.size());
-        kept.push_back(row);
-      }
-    offsets.assign(1, 0);
-    const Index* const outer = matrix.outerIndexPtr();
-    const Index* const inner = matrix.innerIndexPtr();
-    for (const Index row : kept) {
-      for (Index k = outer[row]; k < outer[row + 1] && inner[k] <= row; ++k) {
-        const Index column = reduced_of[inner[k]];
-        if (column < 0) continue;
-        columns.push_back(column);
-        source.push_back(k);
-      }
-      offsets.push_back(static_cast<Index>(columns.size()));
-    }
-  }
-  Index size() const { return static_cast<Index>(kept.size()); }
-};
 
 std::string pivot_message(Index row) {
   return "the matrix is not positive definite: the pivot of row (vertex) " + std::to_string(row) +
