@@ -19,6 +19,7 @@ constexpr double kHalfLine = 1.3;
 constexpr double kAmbient = 0.42;
 constexpr Color kBackground = rgb(0xffffff);
 constexpr Color kLine = rgb(0x10131a);
+constexpr Color kNoValue = rgb(0xb8b8b8);
 
 /// Viridis at equal steps.
 constexpr std::array<Color, 9> kColors{rgb(0x440154), rgb(0x472d7b), rgb(0x3b528b),
@@ -130,6 +131,7 @@ class Painter {
 }  // namespace
 
 Color ColorScale::at(double value) const {
+  if (!std::isfinite(value)) return kNoValue;
   const double t = high > low ? std::clamp((value - low) / (high - low), 0.0, 1.0) : 0.5;
   const double place = t * static_cast<double>(kColors.size() - 1);
   const auto k = std::min(static_cast<std::size_t>(place), kColors.size() - 2);

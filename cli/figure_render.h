@@ -12,7 +12,7 @@ struct ColorScale {
   double high = 1;
   int isolines = 0;  ///< dark lines, so many between low and high
 
-  /// Beyond the ends the colours of the ends.
+  /// Beyond the ends the colours of the ends; grey for what is not finite.
   Color at(double value) const;
 };
 

@@ -164,11 +164,13 @@ std::vector<Json> run_cases(Session& session, const Experiment& experiment,
       ++counts.cached;
     } else {
       const auto start = std::chrono::steady_clock::now();
+      bool failed = false;
       result = Json{{"rows", Json::array()}};
       try {
         for (Json& row : one.measure()) (*result)["rows"].push_back(std::move(row));
         ++counts.measured;
       } catch (const Error& error) {
+        failed = true;
         ++counts.failed;
         session.note(std::string(experiment.name) + ", " + describe(one.parameters) + ": " +
                      error.what());
@@ -176,7 +178,8 @@ std::vector<Json> run_cases(Session& session, const Experiment& experiment,
       }
       (*result)["seconds"] =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      cache.store(key, *result);
+      // A failure is tried again, and said again, in the next run.
+      if (!failed) cache.store(key, *result);
     }
     seconds += result->value("seconds", 0.0);
     for (const Json& values : (*result)["rows"]) {

@@ -49,7 +49,7 @@ PolygonMesh pair_triangles(const PolygonMesh& mesh) {
 /// The model with other faces over its vertices; of a model of triangles those of its dual.
 struct Tessellations {
   PolygonMesh polygons, triangles, quads;
-  Index source = 0;  ///< the vertex farthest from the middle of the bounding box
+  Index source = 0;  ///< the vertex of a face that is farthest from the middle of the bounding box
 };
 
 const Tessellations& tessellations(const std::string& file) {
@@ -68,7 +68,13 @@ const Tessellations& tessellations(const std::string& file) {
   made.quads = pair_triangles(made.triangles);
   const Points& points = made.polygons.points();
   const Eigen::RowVector3d middle = (points.colwise().minCoeff() + points.colwise().maxCoeff()) / 2;
-  (points.rowwise() - middle).rowwise().squaredNorm().maxCoeff(&made.source);
+  double farthest = -1;
+  for (const Index v : made.polygons.faces().indices) {
+    const double distance = (points.row(v) - middle).squaredNorm();
+    if (distance <= farthest) continue;
+    farthest = distance;
+    made.source = v;
+  }
   return read.emplace(file, std::move(made)).first->second;
 }
 

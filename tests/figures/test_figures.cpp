@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "carat/base/error.h"
 #include "cli/figure_render.h"
@@ -142,6 +143,12 @@ TEST(Render, nearer_faces_hide_others_and_values_become_colours) {
   EXPECT_GT(value_of(scale.at(1)), value_of(scale.at(0.5)));
   EXPECT_EQ(value_of(scale.at(7)), value_of(scale.at(1)));
   EXPECT_EQ(value_of(scale.at(-7)), value_of(scale.at(0)));
+  for (const double none :
+       {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    const Color gray = scale.at(none);
+    EXPECT_EQ(gray.red, gray.green);
+    EXPECT_EQ(gray.red, gray.blue);
+  }
   for (const bool front_first : {false, true}) {
     const std::vector<std::vector<Index>> faces{{0, 1, 2, 3}, {4, 5, 6, 7}};
     const auto mesh =
