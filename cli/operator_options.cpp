@@ -120,6 +120,15 @@ OperatorChoice default_choice(const Mesh& mesh, const std::optional<Application>
   return {operators_of(mesh).front()->name};
 }
 
+/// "stabilized_diamond, mass moment-exact".
+std::string in_words(const OperatorChoice& choice) {
+  std::string words = choice.name;
+  if (choice.mass != MassKind::Default)
+    words += std::string(", mass ") + mass_kind_name(choice.mass);
+  if (choice.theta) words += ", theta " + text(*choice.theta);
+  return words;
+}
+
 /// The operator of that name on meshes of this kind.
 template <class Mesh>
 const OperatorEntry<Mesh>& choose_operator(const Mesh& mesh, const std::string& name) {
@@ -202,9 +211,9 @@ void declare_operator_options(CLI::App& app, OperatorOptions& options,
   const bool surfaces_only = application == Application::MeanCurvature;
   std::vector<std::string> choices = names(surface_operators());
   std::string description = "The discrete operator; see carat list operators.\nDefault: " +
-                            default_choice(PolygonMesh(), application).words();
+                            in_words(default_choice(PolygonMesh(), application));
   if (!surfaces_only)
-    description += ",\nin volumes " + default_choice(PolyhedralMesh(), application).words();
+    description += ",\nin volumes " + in_words(default_choice(PolyhedralMesh(), application));
   description += ".\nSurfaces:\n" + join_in_lines(choices);
   if (!surfaces_only) {
     const std::vector<std::string> of_volumes = names(volume_operators());

@@ -1,19 +1,6 @@
 #include "carat/apps/recommended.h"
 
-#include <cstdio>
-
 namespace carat {
-
-std::string OperatorChoice::words() const {
-  std::string text = name;
-  if (mass != MassKind::Default) text += std::string(", mass ") + mass_kind_name(mass);
-  if (theta) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%g", *theta);
-    text += std::string(", theta ") + number;
-  }
-  return text;
-}
 
 OperatorChoice recommended_operator(Application application, const PolygonMesh&) {
   switch (application) {

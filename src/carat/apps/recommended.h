@@ -14,9 +14,6 @@ struct OperatorChoice {
   const char* name;
   MassKind mass = MassKind::Default;
   std::optional<double> theta{};
-
-  /// "stabilized_diamond, mass moment-exact".
-  std::string words() const;
 };
 
 /// The most accurate of the diamonds for an application and a kind of mesh: in no column of
