@@ -107,8 +107,8 @@ void compare(Session& session, const Mesh& mesh, const Discretization& discretiz
   fields.push_back(scalar_field("error", u - reference));
 }
 
-void report_solution(Session& session, const PoissonSolution& solution, const Vector& u,
-                     const FactorInfo& info) {
+void report_solution(Session& session, const PoissonSolution& solution, const Vector& u) {
+  const FactorInfo& info = solution.solver;
   Json& report = session.report();
   report["u"] = extremes(u);
   report["relative_residual"] = solution.relative_residual;
@@ -159,7 +159,7 @@ void solve(Session& session, const Options& options, const Given& given, Data& d
 
   report_conditions(session, conditions, words(data.mesh).side);
   const Vector u = solution.values.head(data.mesh.n_vertices());
-  report_solution(session, solution, u, poisson.info());
+  report_solution(session, solution, u);
   data.fields.vertex = {scalar_field("u", u)};
   element_fields(data).clear();
   if (given.exact)

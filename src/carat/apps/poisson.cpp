@@ -185,13 +185,18 @@ void Poisson::fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions&
   }
 }
 
-Vector Poisson::solve_system(const Vector& rhs) const {
-  if (!iterative_) return solver_->solve(rhs);
-  try {
-    return iterative_->solve(rhs);
-  } catch (const SolverFailure&) {
-    return SpdSolver(system_, held_).solve(rhs);
-  }
+Vector Poisson::solve_system(const Vector& rhs, FactorInfo& solver) const {
+  if (iterative_) try {
+      const Vector solution = iterative_->solve(rhs);
+      solver = iterative_->info();
+      return solution;
+    } catch (const SolverFailure&) {
+      const SpdSolver direct(system_, held_);
+      solver = direct.info();
+      return direct.solve(rhs);
+    }
+  solver = solver_->info();
+  return solver_->solve(rhs);
 }
 
 PoissonSolution Poisson::solve(const Vector& f) const {
@@ -238,7 +243,7 @@ PoissonSolution Poisson::solve_integrated(const Vector& load) const {
       b[v] -= sum[c] / measure[c] * vertex_mass[v];
 
   const Vector lifted = b - system_ * fixed_values_;
-  solution.values = solve_system(lifted) + fixed_values_;
+  solution.values = solve_system(lifted, solution.solver) + fixed_values_;
 
   // Floating components: mean zero by mass.
   std::vector<double> mean(n_components, 0);

@@ -21,6 +21,9 @@ struct PoissonSolution {
   /// |integral of the data| / integral of |data| over the worst floating component. It should
   /// vanish; what is left was subtracted as a constant right-hand side.
   double imbalance = 0;
+  /// What solved it: a Cholesky factorisation; in large volumes conjugate gradients, which give way
+  /// to the former where they do not converge.
+  FactorInfo solver{};
 };
 
 /// Solves -div(K grad u) = f for any number of right-hand sides.
@@ -44,14 +47,10 @@ class Poisson {
   /// \param load  integrated right-hand side, e.g. mass * f
   PoissonSolution solve_integrated(const Vector& load) const;
 
-  /// Of the Cholesky factorisation, or in large volumes of the incomplete one of conjugate
-  /// gradients, which give way to the former where they do not converge.
-  const FactorInfo& info() const { return iterative_ ? iterative_->info() : solver_->info(); }
-
  private:
   Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
           const BoundaryConditions& conditions, bool volume);
-  Vector solve_system(const Vector& rhs) const;
+  Vector solve_system(const Vector& rhs, FactorInfo& solver) const;
   void fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions& conditions);
   void fix_boundary_unknowns(const ExtraUnknowns& extra, const BoundaryConditions& conditions);
 
