@@ -41,7 +41,7 @@ class ShiftedInverse {
     std::vector<bool> unused(static_cast<std::size_t>(rows()));
     const Vector diagonal = d_.mass.diagonal();
     for (Eigen::Index i = 0; i < rows(); ++i) unused[i] = diagonal[i] == 0;
-    solver_ = std::make_unique<SpdSolver>(SparseMatrix(d_.stiffness - shift * d_.mass), unused);
+    solver_ = std::make_unique<Cholesky>(SparseMatrix(d_.stiffness - shift * d_.mass), unused);
   }
   void perform_op(const double* in, double* out) const {
     const Eigen::Index n = rows();
@@ -50,7 +50,7 @@ class ShiftedInverse {
 
  private:
   const Discretization& d_;
-  std::unique_ptr<SpdSolver> solver_;
+  std::unique_ptr<Cholesky> solver_;
 };
 
 double worst_residual(const Discretization& d, const Vector& values, const Matrix& vectors) {

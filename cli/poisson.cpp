@@ -19,7 +19,7 @@ namespace carat::cli {
 namespace {
 
 struct Options {
-  std::string input, output;
+  std::string input, output, solver = "auto";
   std::string rhs, coefficient_field;
   std::vector<std::string> dirichlet, neumann, robin;
   std::optional<std::string> dirichlet_where, coefficient, exact;
@@ -107,16 +107,25 @@ void compare(Session& session, const Mesh& mesh, const Discretization& discretiz
   fields.push_back(scalar_field("error", u - reference));
 }
 
-void report_solution(Session& session, const PoissonSolution& solution, const Vector& u) {
-  const FactorInfo& info = solution.solver;
+void report_solution(Session& session, const SolverInfo& info, const PoissonSolution& solution,
+                     const Vector& u) {
   Json& report = session.report();
   report["u"] = extremes(u);
   report["relative_residual"] = solution.relative_residual;
   report["floating_components"] = solution.floating_components;
   report["imbalance"] = solution.imbalance;
   report["errors"] = nullptr;
-  report["solver"] = {
-      {"method", info.method}, {"ordering", info.ordering}, {"factor_nnz", info.nonzeros}};
+  const SolveReport& how = solution.solve;
+  report["solver"] = {{"kind", solver_kind_name(info.kind)},
+                      {"method", how.method},
+                      {"reason", info.reason},
+                      {"ordering", info.ordering},
+                      {"factor_nnz", info.nonzeros},
+                      {"iterations", how.iterations},
+                      {"residual", how.residual}};
+  session.say("solver: " + how.method +
+              (how.iterations > 0 ? ", " + count(how.iterations, "iteration") : "") +
+              (info.reason.empty() ? "" : " (" + info.reason + ")"));
   session.say("u: " + describe_extremes(u) + ", relative residual " +
               text(solution.relative_residual));
   if (solution.floating_components > 0)
@@ -153,13 +162,15 @@ void solve(Session& session, const Options& options, const Given& given, Data& d
       discretize(session, data.mesh, options.discretization,
                  writes ? DiscretizationParts::Frames : DiscretizationParts::Matrices, coefficient);
   const Vector f = at_unknowns(given.rhs, data.mesh.points(), discretization);
-  const Poisson poisson =
-      session.phase("factor", [&] { return Poisson(data.mesh, discretization, conditions); });
+  const Poisson poisson = session.phase("factor", [&] {
+    return Poisson(data.mesh, discretization, conditions,
+                   {.kind = solver_kind(options.solver), .threads = session.threads()});
+  });
   const PoissonSolution solution = session.phase("solve", [&] { return poisson.solve(f); });
 
   report_conditions(session, conditions, words(data.mesh).side);
   const Vector u = solution.values.head(data.mesh.n_vertices());
-  report_solution(session, solution, u);
+  report_solution(session, poisson.solver(), solution, u);
   data.fields.vertex = {scalar_field("u", u)};
   element_fields(data).clear();
   if (given.exact)
@@ -221,6 +232,11 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "File for the mesh with the fields u and gradient, and\n"
                  "error with --exact, or a view (.html); without it\n"
                  "nothing is written");
+  app.add_option("--solver", options->solver,
+                 "auto: a Cholesky factorisation of small systems, conjugate\n"
+                 "gradients with multigrid for large ones. Others: cholesky,\n"
+                 "multigrid, incomplete-cholesky, sparser-cholesky")
+      ->type_name("NAME");
   declare_operator_options(app, options->discretization, Application::Poisson);
   return [options](Session& session) { run(session, *options); };
 }

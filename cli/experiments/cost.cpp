@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "carat/mesh/statistics.h"
-#include "carat/solve/spd_solver.h"
+#include "carat/solve/cholesky.h"
 #include "cli/experiments/series.h"
 
 namespace carat::cli {
@@ -40,7 +40,7 @@ std::vector<Json> measure(const Mesh& mesh, const Prepare& prepare) {
     if (d.extra.boundary_vertices.size(k) > 0)
       fixed[static_cast<std::size_t>(mesh.n_vertices() + k)] = true;
   if (std::find(fixed.begin(), fixed.end(), true) == fixed.end()) fixed[0] = true;
-  const SpdSolver solver(d.stiffness, fixed);
+  const Cholesky solver(d.stiffness, fixed);
   const Vector load = d.lumped_mass();
   row["back_substitution"] = seconds_of([&] { solver.solve(load); });
   row["unknowns"] = d.n_unknowns();

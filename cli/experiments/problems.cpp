@@ -7,7 +7,7 @@
 #include "carat/base/error.h"
 #include "carat/mesh/statistics.h"
 #include "carat/report/franke.h"
-#include "carat/solve/spd_solver.h"
+#include "carat/solve/cholesky.h"
 #include "cli/experiments/series.h"
 
 namespace carat::cli {
@@ -147,7 +147,7 @@ std::vector<double> dirichlet_errors(const Mesh& mesh, const SparseMatrix& stiff
   for (std::size_t k = 0; k < masses.size(); ++k)
     loads.col(static_cast<Eigen::Index>(k)) = *masses[k] * source - from_boundary;
   // Fixed rows of the solution are zero.
-  const Matrix solutions = SpdSolver(stiffness, fixed).solve(loads);
+  const Matrix solutions = Cholesky(stiffness, fixed).solve(loads);
   std::vector<double> errors;
   for (Eigen::Index k = 0; k < solutions.cols(); ++k)
     errors.push_back((solutions.col(k) + boundary - exact).norm() / std::sqrt(n_free));
@@ -198,7 +198,7 @@ std::vector<double> sphere_poisson_errors(const SparseMatrix& stiffness,
 Json applied_error(const SparseMatrix& stiffness, const SparseMatrix& mass,
                    const Vector& eigenfunction, double eigenvalue) {
   try {
-    const Vector applied = SpdSolver(mass).solve(Vector(stiffness * eigenfunction));
+    const Vector applied = Cholesky(mass).solve(Vector(stiffness * eigenfunction));
     return root_mean_square(applied - eigenvalue * eigenfunction);
   } catch (const SolverFailure&) {
     return nullptr;

@@ -16,5 +16,6 @@
 #include "carat/mesh/transform.h"
 #include "carat/mesh/volume_statistics.h"
 #include "carat/operators/registry.h"
+#include "carat/solve/cholesky.h"
 #include "carat/solve/eigen_solver.h"
 #include "carat/solve/spd_solver.h"

@@ -2,7 +2,7 @@
 // symmetry, semidefiniteness, kernel, linear precision, D = -G^T M_s, L = D G, total mass.
 // Tolerances are multiples of the rounding unit times the row length or condition that they sum.
 
-#include "carat/solve/spd_solver.h"
+#include "carat/solve/cholesky.h"
 #include "support/claim_cases.h"
 #include "support/measures.h"
 
@@ -52,7 +52,7 @@ TEST_P(Structure, mass_is_positive_definite_and_sums_to_the_area) {
   if (GetParam().planar()) {
     EXPECT_LT(mass_defect(d.mass, 1.0), 1e-13);
   }
-  EXPECT_NO_THROW(SpdSolver{d.mass});
+  EXPECT_NO_THROW(Cholesky{d.mass});
   EXPECT_NEAR(d.sample_measure.sum(), d.mass.sum(), 1e-13 * d.mass.sum());
 }
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "carat/base/error.h"
-#include "carat/solve/spd_solver.h"
+#include "carat/solve/cholesky.h"
 #include "support/volume_claim_cases.h"
 #include "support/volume_measures.h"
 
@@ -83,7 +83,7 @@ TEST_P(VolumeStructure, mass_is_positive_definite_and_sums_to_the_volume) {
   const PolyhedralMesh mesh = GetParam().mesh();
   const Discretization d = discretization(mesh, {.parts = DiscretizationParts::Matrices});
   expect_volume(mesh, d);
-  EXPECT_NO_THROW(SpdSolver{d.mass});
+  EXPECT_NO_THROW(Cholesky{d.mass});
 }
 
 TEST_P(VolumeStructure, lumped_mass_holds_the_row_sums) {

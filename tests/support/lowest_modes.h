@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "carat/solve/spd_solver.h"
+#include "carat/solve/cholesky.h"
 
 namespace carat::test {
 
@@ -12,7 +12,7 @@ namespace carat::test {
 /// the rate lambda_k / lambda_2k a step, squared in the eigenvalues.
 inline Vector lowest_eigenvalues(const SparseMatrix& stiffness, const SparseMatrix& mass,
                                  const std::vector<bool>& fixed, Index k, int steps) {
-  const SpdSolver solver(stiffness, fixed);
+  const Cholesky solver(stiffness, fixed);
   const Eigen::Index n = stiffness.rows();
   Matrix x = Matrix::Zero(n, 2 * k);
   for (Eigen::Index j = 0; j < x.cols(); ++j)

@@ -10,7 +10,8 @@
 #include "carat/base/error.h"
 #include "carat/generators/families.h"
 #include "carat/operators/registry.h"
-#include "carat/solve/conjugate_gradients.h"
+#include "carat/solve/incomplete_cholesky.h"
+#include "carat/solve/multigrid.h"
 #include "carat/solve/spd_solver.h"
 #include "support/measures.h"
 #include "support/meshes.h"
@@ -18,100 +19,165 @@
 namespace carat::test {
 namespace {
 
+constexpr SolverKind kIterations[] = {SolverKind::Multigrid, SolverKind::IncompleteCholesky,
+                                      SolverKind::SparserCholesky};
+
+std::shared_ptr<const SparseMatrix> share(SparseMatrix matrix) {
+  return std::make_shared<SparseMatrix>(std::move(matrix));
+}
+
 SparseMatrix spd() {
   const Discretization d = discretize(quad_grid(7, 5));
   return d.stiffness + d.mass;
 }
 
-TEST(SpdSolver, solves_many_right_hand_sides) {
-  const SparseMatrix a = spd();
-  const Matrix x = Matrix::Random(a.rows(), 4);
-  EXPECT_LT((SpdSolver(a).solve(a * x) - x).cwiseAbs().maxCoeff(), 1e-12);
-}
-
-TEST(SpdSolver, fixed_rows_are_held_at_zero) {
-  const SparseMatrix a = spd();
-  std::vector<bool> fixed(static_cast<std::size_t>(a.rows()), false);
-  fixed[0] = fixed[17] = true;
-  Vector x = Vector::LinSpaced(a.rows(), 1, 2);
-  x[0] = x[17] = 0;
-  Vector rhs = a * x;
-  rhs[0] = 1e6;  // ignored
-  const Vector solution = SpdSolver(a, fixed).solve(rhs);
-  EXPECT_LT((solution - x).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_EQ(solution[0], 0);
-  EXPECT_EQ(SpdSolver(a, std::vector<bool>(fixed.size(), true)).solve(rhs).cwiseAbs().maxCoeff(),
-            0);
-}
-
-TEST(SpdSolver, refactor_takes_new_values) {
-  const SparseMatrix a = spd();
-  SpdSolver solver(a);
-  const Vector x = Vector::LinSpaced(a.rows(), -1, 1);
-  solver.refactor(SparseMatrix(3 * a));
-  EXPECT_LT((solver.solve(3 * (a * x)) - x).cwiseAbs().maxCoeff(), 1e-12);
-  SparseMatrix other(a.rows(), a.cols());
-  other.setIdentity();
-  EXPECT_THROW(solver.refactor(other), InvalidOption);
-}
-
-TEST(SpdSolver, a_failing_pivot_is_named) {
-  SparseMatrix a = spd();
-  a.coeffRef(20, 20) = -1;
-  try {
-    SpdSolver solver(a);
-    FAIL() << "nothing was thrown";
-  } catch (const SolverFailure& e) {
-    EXPECT_NE(std::string(e.what()).find("not positive definite"), std::string::npos);
-    EXPECT_EQ(e.elements(), std::vector<Index>{20});  // the rows before it have sound pivots
-  }
-  EXPECT_THROW(SpdSolver(SparseMatrix(-spd())), SolverFailure);
-}
-
-TEST(SpdSolver, wrong_sizes_and_values_are_refused) {
-  const SparseMatrix a = spd();
-  EXPECT_THROW(SpdSolver(SparseMatrix(a.topRows(5))), InvalidOption);
-  EXPECT_THROW(SpdSolver(a, std::vector<bool>(3)), InvalidOption);
-  const SpdSolver solver(a);
-  EXPECT_THROW(solver.solve(Vector::Zero(3)), InvalidOption);
-  Vector rhs = Vector::Zero(a.rows());
-  rhs[3] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(solver.solve(rhs), SolverFailure);
-}
-
-TEST(ConjugateGradients, agree_with_the_factorisation) {
-  const PolyhedralMesh mesh = generate_volume("cube-voronoi", {.level = 1, .jitter = 0.2});
-  const Discretization d = discretize(mesh, "diamond");
+template <class Mesh>
+void expect_all_kinds_agree(const Mesh& mesh, const char* name) {
+  const Discretization d = discretize(mesh, name);
+  const auto matrix = share(d.stiffness);
   std::vector<bool> fixed(static_cast<std::size_t>(mesh.n_vertices()), false);
   fixed[3] = fixed[40] = true;
   Matrix rhs = Matrix::Random(mesh.n_vertices(), 3);
   rhs.col(1).setZero();
-  const Matrix direct = SpdSolver(d.stiffness, fixed).solve(rhs);
-  const ConjugateGradients iterative(d.stiffness, fixed);
-  const Matrix solution = iterative.solve(rhs);
-  EXPECT_LT((solution - direct).norm(), 1e-9 * direct.norm());
-  EXPECT_EQ(solution.col(1).norm(), 0);
-  EXPECT_EQ(solution.row(40).norm(), 0);
-  EXPECT_GT(iterative.info().nonzeros, 0);
+  const Matrix direct = Cholesky(d.stiffness, fixed).solve(rhs);
+  for (const SolverKind kind : kIterations) {
+    SCOPED_TRACE(solver_kind_name(kind));
+    SolverOptions options{.kind = kind, .sparser = sparser_stiffness(mesh, d)};
+    for (const bool sparser : {true, false}) {
+      if (!sparser) options.sparser = nullptr;
+      const SpdSolver solver(matrix, fixed, options);
+      SolveReport report;
+      const Matrix solution = solver.solve(rhs, &report);
+      EXPECT_LT((solution - direct).norm(), 1e-9 * direct.norm());
+      EXPECT_EQ(solution.col(1).norm(), 0);
+      EXPECT_EQ(solution.row(40).norm(), 0);
+      EXPECT_GT(report.iterations, 0);
+      EXPECT_LT(report.residual, 1e-10);
+      EXPECT_EQ(report.method.rfind("conjugate gradients", 0), 0U);
+      EXPECT_EQ(solver.info().kind, kind);
+      EXPECT_GT(solver.info().nonzeros, 0);
+    }
+  }
 }
 
-TEST(ConjugateGradients, never_give_a_wrong_answer) {
+TEST(SpdSolver, all_kinds_agree) {
+  expect_all_kinds_agree(generate_mesh("plane-voronoi", {.level = 2, .jitter = 0.2}), "diamond");
+  expect_all_kinds_agree(generate_mesh("sphere-hexagons", {.level = 2}), "stabilized_diamond");
+  expect_all_kinds_agree(generate_volume("cube-voronoi", {.level = 1, .jitter = 0.2}), "diamond");
+  expect_all_kinds_agree(generate_volume("cube-tets", {.level = 2}), "bunge");
+}
+
+TEST(SpdSolver, auto_chooses_by_size_and_number_of_right_hand_sides) {
+  const PolygonMesh large = generate_mesh("plane-quads", {.level = 5});
+  ASSERT_GT(large.n_vertices(), 10000);
+  const Discretization d = discretize(large);
+  const auto matrix = share(d.stiffness + d.mass);
+  const SpdSolver few(matrix, {}, {.sparser = sparser_stiffness(large, d)});
+  EXPECT_EQ(few.info().kind, SolverKind::Multigrid);
+  EXPECT_FALSE(few.info().reason.empty());
+  const SpdSolver many(matrix, {}, {.right_hand_sides = 100});
+  EXPECT_EQ(many.info().kind, SolverKind::Cholesky);
+  const SpdSolver small(share(spd()));
+  EXPECT_EQ(small.info().kind, SolverKind::Cholesky);
+  EXPECT_EQ(small.info().reason, "48 unknowns of a surface are few");
+  const Vector x = Vector::LinSpaced(large.n_vertices(), -1, 1);
+  for (const SpdSolver* const solver : {&few, &many}) {
+    SolveReport report;
+    EXPECT_LT((solver->solve(*matrix * x, &report) - x).norm(), 1e-9 * x.norm());
+    EXPECT_LT(report.residual, 1e-11);
+  }
+}
+
+TEST(SpdSolver, never_gives_a_wrong_answer) {
   SparseMatrix a = spd();
   a.coeffRef(3, 3) = -1;
-  EXPECT_THROW(ConjugateGradients{a}, SolverFailure);
-  // Indefinite with a positive diagonal.
-  SparseMatrix b(2, 2);
+  SparseMatrix b(2, 2);  // indefinite with a positive diagonal
   b.insert(0, 0) = b.insert(1, 1) = 1;
   b.insert(0, 1) = b.insert(1, 0) = 2;
   b.makeCompressed();
-  EXPECT_THROW(ConjugateGradients(b).solve(Vector{{1.0, -1.0}}), SolverFailure);
-  EXPECT_THROW(ConjugateGradients(spd()).solve(
-                   Vector::Constant(spd().rows(), std::numeric_limits<double>::quiet_NaN())),
-               SolverFailure);
-  EXPECT_THROW(ConjugateGradients(spd()).solve(Vector::Zero(3)), InvalidOption);
+  const Vector nan = Vector::Constant(spd().rows(), std::numeric_limits<double>::quiet_NaN());
+  for (const SolverKind kind : kIterations) {
+    SCOPED_TRACE(solver_kind_name(kind));
+    const SolverOptions options{.kind = kind};
+    EXPECT_THROW(SpdSolver(share(a), {}, options), SolverFailure);
+    EXPECT_THROW(SpdSolver(share(b), {}, options).solve(Vector{{1.0, -1.0}}), SolverFailure);
+    EXPECT_THROW(SpdSolver(share(spd()), {}, options).solve(nan), SolverFailure);
+    EXPECT_THROW(SpdSolver(share(spd()), {}, options).solve(Vector::Zero(3)), InvalidOption);
+  }
+  EXPECT_THROW(SpdSolver(share(a)), SolverFailure);
+  EXPECT_THROW(SpdSolver(share(spd())).solve(nan), SolverFailure);
+  EXPECT_THROW(SpdSolver(share(SparseMatrix(a.topRows(5)))), InvalidOption);
+  EXPECT_THROW(SpdSolver(share(a), std::vector<bool>(3)), InvalidOption);
 }
 
-TEST(ConjugateGradients, solve_large_volumes) {
+/// 1-D Laplacian with couplings from 1 to 1e-6: no preconditioner of the identity helps.
+TEST(SpdSolver, failures_tell_the_course_of_the_residual) {
+  class Identity final : public Preconditioner {
+   public:
+    void apply(const Vector& r, Vector& z) const override { z = r; }
+    std::int64_t nonzeros() const override { return 0; }
+  };
+  const Index n = 400;
+  const auto multiply = [&](const Vector& x, Vector& y) {
+    for (Index i = 0; i < n; ++i)
+      y[i] = 2 * x[i] - (i > 0 ? x[i - 1] : 0) - (i + 1 < n ? x[i + 1] : 0);
+  };
+  SolveReport report;
+  try {
+    conjugate_gradients(multiply, Identity(), Vector::Unit(n, 0), 4, {.iterations = 50}, report);
+    FAIL() << "50 iterations cannot cross 400 links";
+  } catch (const SolverFailure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("(50)"), std::string::npos) << failure.what();
+    EXPECT_NE(std::string(failure.what()).find("1.0e+00 (0)"), std::string::npos);
+  }
+}
+
+TEST(SpdSolver, names_are_checked) {
+  EXPECT_EQ(solver_kind("multigrid"), SolverKind::Multigrid);
+  EXPECT_THROW(solver_kind("jacobi"), InvalidOption);
+}
+
+/// z = M r is linear, symmetric and positive to the accuracy of its single precision.
+TEST(Multigrid, is_symmetric_and_positive) {
+  const PolygonMesh mesh = generate_mesh("plane-quads", {.level = 4, .jitter = 0.2});
+  const Discretization d = discretize(mesh);
+  std::vector<bool> fixed(static_cast<std::size_t>(mesh.n_vertices()), false);
+  fixed[7] = true;
+  const Multigrid multigrid(d.stiffness, fixed);
+  Vector a = Vector::Random(mesh.n_vertices()), b = Vector::Random(mesh.n_vertices());
+  Vector ma, mb, sum;
+  multigrid.apply(a, ma);
+  multigrid.apply(b, mb);
+  multigrid.apply(a + b, sum);
+  EXPECT_EQ(ma[7], 0);
+  EXPECT_LT((sum - ma - mb).norm(), 1e-5 * sum.norm());
+  EXPECT_NEAR(a.dot(mb), b.dot(ma), 1e-5 * a.norm() * mb.norm());
+  EXPECT_GT(a.dot(ma), 0);
+}
+
+/// Iterations hardly grow with the size, on graded meshes too.
+TEST(Multigrid, iterations_do_not_grow) {
+  const auto iterations = [](const auto& mesh) {
+    const Discretization d = discretize(mesh);
+    std::vector<bool> fixed(static_cast<std::size_t>(mesh.n_vertices()), false);
+    fixed[0] = true;
+    const SpdSolver solver(share(d.stiffness), fixed,
+                           {.kind = SolverKind::Multigrid, .sparser = sparser_stiffness(mesh, d)});
+    SolveReport report;
+    solver.solve(Vector(d.mass * Vector::Random(mesh.n_vertices())), &report);
+    return report.iterations;
+  };
+  for (const int level : {3, 4, 5}) {
+    EXPECT_LT(iterations(generate_mesh("plane-voronoi", {.level = level})), 40);
+    EXPECT_LT(iterations(generate_mesh("sphere-quads", {.level = level})), 40);
+  }
+  for (const int level : {1, 2, 3}) {
+    EXPECT_LT(iterations(generate_volume("cube-tets-adaptive", {.level = level})), 40);
+    EXPECT_LT(iterations(generate_volume("cube-hexahedra", {.level = level, .jitter = 0.2})), 40);
+  }
+}
+
+TEST(SpdSolver, solves_large_volumes) {
   const PolyhedralMesh mesh = generate_volume("cube-hexahedra", {.level = 3, .jitter = 0.2});
   BoundaryConditions conditions;
   conditions.dirichlet_vertices = {0};
@@ -125,12 +191,13 @@ TEST(ConjugateGradients, solve_large_volumes) {
   EXPECT_LT((solution.values - u - Vector::Constant(u.size(), shift)).lpNorm<Eigen::Infinity>(),
             1e-8);
   EXPECT_LT(solution.relative_residual, 1e-10);
-  EXPECT_EQ(solution.solver.method.substr(0, 19), "conjugate gradients");
+  EXPECT_EQ(poisson.solver().kind, SolverKind::Multigrid);
+  EXPECT_EQ(solution.solve.method, "conjugate gradients, multigrid of the sparser matrix");
 }
 
 /// A chain through all vertices in an order of chance: the iteration would need as many steps as it
 /// has links, while its factorisation has no fill.
-TEST(ConjugateGradients, give_way_to_the_factorisation_where_they_do_not_converge) {
+TEST(SpdSolver, gives_way_to_the_factorisation_where_iterations_do_not_converge) {
   const PolyhedralMesh mesh = generate_volume("cube-hexahedra", {.level = 3});
   Discretization d = discretize(mesh);
   std::vector<Index> order(static_cast<std::size_t>(mesh.n_vertices()));
@@ -150,36 +217,9 @@ TEST(ConjugateGradients, give_way_to_the_factorisation_where_they_do_not_converg
   Vector load = Vector::Zero(mesh.n_vertices());
   load[order.back()] = 1;
   const PoissonSolution solution = Poisson(mesh, d, conditions).solve_integrated(load);
-  EXPECT_EQ(solution.solver.method.find("conjugate"), std::string::npos);
+  EXPECT_EQ(solution.solve.method.find("conjugate"), std::string::npos);
   for (std::size_t k = 0; k < order.size(); k += 1000)
     EXPECT_NEAR(solution.values[order[k]], static_cast<double>(k), 1e-6);
-}
-
-TEST(SemidefiniteSolver, works_in_the_complement_of_constants_of_each_component) {
-  const PolygonMesh mesh = two_components_with_loose_vertices();
-  const Discretization d = discretize(mesh);
-  const SemidefiniteSolver solver(d.stiffness);
-  EXPECT_EQ(solver.n_components(), 2);
-  EXPECT_EQ(solver.components(), (std::vector<Index>{0, 0, 0, -1, -1, 1, 1, 1, 1}));
-  Vector rhs = Vector::Zero(9);
-  rhs << 1, -2, 1, 5, 5, 3, -1, -1, -1;
-  const Vector u = solver.solve(rhs);
-  rhs[3] = rhs[4] = 0;
-  EXPECT_LT((d.stiffness * u - rhs).cwiseAbs().maxCoeff(), 1e-13);
-  EXPECT_NEAR(u.head(3).sum(), 0, 1e-14);
-  EXPECT_NEAR(u.tail(4).sum(), 0, 1e-14);
-  EXPECT_EQ(u[3], 0);
-  EXPECT_NEAR(solver.imbalance(rhs), 0, 1e-15);
-  rhs[5] += 6;
-  EXPECT_NEAR(solver.imbalance(rhs), 6.0 / 12, 1e-15);
-}
-
-TEST(MatrixComponents, explicit_zeros_do_not_connect) {
-  SparseMatrix a(3, 3);
-  a.insert(0, 0) = 1;
-  a.insert(0, 1) = 0;
-  a.insert(1, 1) = 1;
-  EXPECT_EQ(matrix_components(a), (std::vector<Index>{0, 1, -1}));
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ HeatGeodesics::HeatGeodesics(const PolygonMesh& mesh, Discretization discretizat
   poisson_ = std::make_unique<SemidefiniteSolver>(discretization_.stiffness);
   std::vector<bool> excluded(static_cast<std::size_t>(mesh.n_vertices()));
   for (Index v = 0; v < mesh.n_vertices(); ++v) excluded[v] = poisson_->components()[v] < 0;
-  heat_ = std::make_unique<SpdSolver>(heat, excluded);
+  heat_ = std::make_unique<Cholesky>(heat, excluded);
 }
 
 // All that it takes from the mesh are lengths of edges.

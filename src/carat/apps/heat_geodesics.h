@@ -5,7 +5,7 @@
 
 #include "carat/mesh/polyhedral_mesh.h"
 #include "carat/operators/discretization.h"
-#include "carat/solve/spd_solver.h"
+#include "carat/solve/cholesky.h"
 
 namespace carat {
 
@@ -68,7 +68,7 @@ class HeatGeodesics {
   double time_step_ = 0;
   HeatDirections directions_;
   Vector heat_diagonal_;
-  std::unique_ptr<SpdSolver> heat_;
+  std::unique_ptr<Cholesky> heat_;
   std::unique_ptr<SemidefiniteSolver> poisson_;
 };
 

@@ -5,7 +5,7 @@
 #include "carat/base/error.h"
 #include "carat/mesh/statistics.h"
 #include "carat/operators/common.h"
-#include "carat/solve/spd_solver.h"
+#include "carat/solve/cholesky.h"
 
 namespace carat {
 
@@ -28,7 +28,7 @@ MeanCurvature mean_curvature(const PolygonMesh& mesh, const Discretization& disc
   }
   const Points centred = mesh.points().rowwise() - mesh.points().colwise().mean();
   const Matrix curvature_vectors =
-      SpdSolver(discretization.mass, fixed).solve(-(discretization.stiffness * centred));
+      Cholesky(discretization.mass, fixed).solve(-(discretization.stiffness * centred));
   result.values = curvature_vectors.rowwise().norm() / 2;
   if (with_sign) {
     const Points normals = vertex_normals(mesh);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "carat/base/error.h"
+#include "carat/operators/registry.h"
 
 namespace carat {
 namespace {
@@ -15,11 +16,6 @@ namespace {
 // Lowest eigenvalue of S over its largest entry below which it is singular: of a solvable problem
 // it is of the order of (h / diameter)^2.
 constexpr double kSingular = 1e-11;
-
-// Volumes of so many unknowns are solved by conjugate gradients: at 30 000 a factorisation takes 5
-// to 16 times as long (docs/performance.md). Smaller ones are factorised, for exact solutions at
-// any number of right-hand sides.
-constexpr Index kIterativeFrom = 20000;
 
 // A right-hand side that misses balance by more than this is a mistake, not discretisation error.
 constexpr double kImbalanceLimit = 0.1;
@@ -48,18 +44,26 @@ void append_zeros(BoundaryIntegrals& boundary, Index n) {
   boundary.robin.conservativeResize(n, n);
 }
 
+SolverOptions settled(SolverOptions options, int dimension, std::function<SparseMatrix()> sparser) {
+  options.dimension = dimension;
+  options.sparser = std::move(sparser);
+  return options;
+}
+
 }  // namespace
 
 Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
-                 const BoundaryConditions& conditions)
-    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions, false) {}
+                 const BoundaryConditions& conditions, const SolverOptions& solver)
+    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions,
+              settled(solver, 2, sparser_stiffness(mesh, discretization))) {}
 
 Poisson::Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
-                 const BoundaryConditions& conditions)
-    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions, true) {}
+                 const BoundaryConditions& conditions, const SolverOptions& solver)
+    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions,
+              settled(solver, 3, sparser_stiffness(mesh, discretization))) {}
 
 Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
-                 const BoundaryConditions& conditions, bool volume)
+                 const BoundaryConditions& conditions, SolverOptions solver)
     : mass_(discretization.mass), boundary_load_(std::move(boundary.load)) {
   if (discretization.n_vertices() != boundary_load_.size())
     throw InvalidOption("the discretization has " + std::to_string(discretization.n_vertices()) +
@@ -75,9 +79,13 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
       component_.empty() ? 0 : *std::max_element(component_.begin(), component_.end()) + 1;
   floating_.assign(static_cast<std::size_t>(n_components), true);
   if (boundary.robin.nonZeros() == 0) {
-    system_ = discretization.stiffness;
+    system_ = std::make_shared<SparseMatrix>(discretization.stiffness);
   } else {
-    system_ = discretization.stiffness + boundary.robin;
+    system_ = std::make_shared<SparseMatrix>(discretization.stiffness + boundary.robin);
+    if (solver.sparser)
+      solver.sparser = [own = std::move(solver.sparser), &boundary] {
+        return SparseMatrix(own() + boundary.robin);
+      };
     for (Index v = 0; v < n; ++v)
       if (component_[v] >= 0 && SparseMatrix::InnerIterator(boundary.robin, v))
         floating_[component_[v]] = false;
@@ -88,7 +96,7 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
   // A floating component is held at zero at its best determined vertex, and shifted afterwards.
   held_ = fixed_;
   std::vector<Index> ground(floating_.size(), -1);
-  const Vector diagonal = system_.diagonal();
+  const Vector diagonal = system_->diagonal();
   for (Index v = 0; v < n; ++v) {
     const Index c = component_[v];
     if (c >= 0 && floating_[c] && (ground[c] < 0 || diagonal[v] > diagonal[ground[c]]))
@@ -104,19 +112,16 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
                         "diamond");
   };
   if (discretization.extra.size() == 0) {
-    if (volume && n >= kIterativeFrom) {
-      try {
-        iterative_ = std::make_unique<ConjugateGradients>(system_, held_);
-        return;
-      } catch (const SolverFailure&) {
-        // The Cholesky factorisation judges, and names the row.
-      }
-    }
-    solver_ = std::make_unique<SpdSolver>(system_, held_);
+    solver_ = std::make_unique<SpdSolver>(system_, held_, solver);
     return;
   }
+  if (solver.kind != SolverKind::Auto && solver.kind != SolverKind::Cholesky)
+    throw InvalidOption("the solver " + std::string(solver_kind_name(solver.kind)) +
+                        " needs an operator with unknowns at the vertices only; " +
+                        discretization.name + " has others: use cholesky");
+  solver.kind = SolverKind::Cholesky;
   try {
-    solver_ = std::make_unique<SpdSolver>(system_, held_);
+    solver_ = std::make_unique<SpdSolver>(system_, held_, solver);
   } catch (const SolverFailure&) {
     refuse_singular();
   }
@@ -185,31 +190,17 @@ void Poisson::fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions&
   }
 }
 
-Vector Poisson::solve_system(const Vector& rhs, FactorInfo& solver) const {
-  if (iterative_) try {
-      const Vector solution = iterative_->solve(rhs);
-      solver = iterative_->info();
-      return solution;
-    } catch (const SolverFailure&) {
-      const SpdSolver direct(system_, held_);
-      solver = direct.info();
-      return direct.solve(rhs);
-    }
-  solver = solver_->info();
-  return solver_->solve(rhs);
-}
-
 PoissonSolution Poisson::solve(const Vector& f) const {
-  if (f.size() != system_.rows())
-    throw InvalidOption(std::to_string(f.size()) + " values for " + std::to_string(system_.rows()) +
-                        " unknowns");
+  if (f.size() != system_->rows())
+    throw InvalidOption(std::to_string(f.size()) + " values for " +
+                        std::to_string(system_->rows()) + " unknowns");
   return solve_integrated(mass_ * f);
 }
 
 PoissonSolution Poisson::solve_integrated(const Vector& load) const {
-  if (load.size() != system_.rows())
+  if (load.size() != system_->rows())
     throw InvalidOption(std::to_string(load.size()) + " values for " +
-                        std::to_string(system_.rows()) + " unknowns");
+                        std::to_string(system_->rows()) + " unknowns");
   if (!load.allFinite())
     throw InvalidOption("the right-hand side holds a value that is not finite");
   PoissonSolution solution;
@@ -242,8 +233,8 @@ PoissonSolution Poisson::solve_integrated(const Vector& load) const {
     if (const Index c = component_[v]; c >= 0 && floating_[c])
       b[v] -= sum[c] / measure[c] * vertex_mass[v];
 
-  const Vector lifted = b - system_ * fixed_values_;
-  solution.values = solve_system(lifted, solution.solver) + fixed_values_;
+  const Vector lifted = b - *system_ * fixed_values_;
+  solution.values = solver_->solve(lifted, &solution.solve) + fixed_values_;
 
   // Floating components: mean zero by mass.
   std::vector<double> mean(n_components, 0);
@@ -253,13 +244,13 @@ PoissonSolution Poisson::solve_integrated(const Vector& load) const {
   for (Index v = 0; v < b.size(); ++v)
     if (const Index c = component_[v]; c >= 0 && floating_[c]) solution.values[v] -= mean[c];
 
-  const Vector residual = system_ * solution.values - b;
+  const Vector residual = *system_ * solution.values - b;
   double worst = 0, row_norm = 0;
   for (Index v = 0; v < b.size(); ++v) {
     if (fixed_[v]) continue;
     worst = std::max(worst, std::abs(residual[v]));
     double row = 0;
-    for (SparseMatrix::InnerIterator entry(system_, v); entry; ++entry)
+    for (SparseMatrix::InnerIterator entry(*system_, v); entry; ++entry)
       row += std::abs(entry.value());
     row_norm = std::max(row_norm, row);
   }

@@ -6,7 +6,6 @@
 
 #include "carat/apps/boundary_conditions.h"
 #include "carat/operators/discretization.h"
-#include "carat/solve/conjugate_gradients.h"
 #include "carat/solve/spd_solver.h"
 
 namespace carat {
@@ -21,25 +20,28 @@ struct PoissonSolution {
   /// |integral of the data| / integral of |data| over the worst floating component. It should
   /// vanish; what is left was subtracted as a constant right-hand side.
   double imbalance = 0;
-  /// What solved it: a Cholesky factorisation; in large volumes conjugate gradients, which give way
-  /// to the former where they do not converge.
-  FactorInfo solver{};
+  /// What solved it, in how many iterations, and |S u - b| / |b| of the system that was solved.
+  SolveReport solve{};
 };
 
 /// Solves -div(K grad u) = f for any number of right-hand sides.
 ///
 /// K is part of the discretization: DiscretizationOptions::coefficient, and in volumes also
 /// cell_coefficient for scalars or symmetric tensors a cell.
+///
+/// Small systems are factorised, large ones solved by conjugate gradients preconditioned through
+/// sparser_stiffness(): see SolverOptions. With unknowns beyond the vertices: always factorised.
 class Poisson {
  public:
   /// \throws InvalidOption  vertex or side out of range, a side that is not on the boundary, a
   ///                        value that is not finite, alpha < 0, lists of different length,
   ///                        a vertex with two different Dirichlet values
+  /// \param solver  kind, right_hand_sides and threads are read; the rest follows from the mesh
   /// \throws SolverFailure  the system is not positive definite, or singular beyond constants
   Poisson(const PolygonMesh& mesh, const Discretization& discretization,
-          const BoundaryConditions& conditions = {});
+          const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
   Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
-          const BoundaryConditions& conditions = {});
+          const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
 
   /// \param f  one value an unknown, the vertices first; the load is mass * f
   /// \throws SolverFailure  a floating component's data do not balance: imbalance > 0.1
@@ -47,23 +49,24 @@ class Poisson {
   /// \param load  integrated right-hand side, e.g. mass * f
   PoissonSolution solve_integrated(const Vector& load) const;
 
+  /// What was chosen to solve with, and why.
+  const SolverInfo& solver() const { return solver_->info(); }
+
  private:
   Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
-          const BoundaryConditions& conditions, bool volume);
-  Vector solve_system(const Vector& rhs, FactorInfo& solver) const;
+          const BoundaryConditions& conditions, SolverOptions solver);
   void fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions& conditions);
   void fix_boundary_unknowns(const ExtraUnknowns& extra, const BoundaryConditions& conditions);
 
-  SparseMatrix system_;  // stiffness plus Robin's matrix
+  std::shared_ptr<const SparseMatrix> system_;  // stiffness plus Robin's matrix
   SparseMatrix mass_;
   Vector boundary_load_;     // Neumann and Robin
   std::vector<bool> fixed_;  // rows not solved for
   Vector fixed_values_;
   std::vector<Index> component_;
-  std::vector<bool> floating_;         // component -> has no Dirichlet and no Robin data
-  std::vector<bool> held_;             // fixed_, and one vertex of each floating component
-  std::unique_ptr<SpdSolver> solver_;  // one of the two
-  std::unique_ptr<ConjugateGradients> iterative_;  // in large volumes
+  std::vector<bool> floating_;  // component -> has no Dirichlet and no Robin data
+  std::vector<bool> held_;      // fixed_, and one vertex of each floating component
+  std::unique_ptr<SpdSolver> solver_;
 };
 
 /// Deviation of u from a reference.

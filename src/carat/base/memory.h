@@ -10,6 +10,9 @@
 
 namespace carat {
 
+/// Bytes that can be allocated without swapping, as the system estimates; 0: unknown.
+std::size_t available_memory();
+
 /// Asks the kernel to back [data, data + bytes) with huge pages. A hint: never fails.
 void advise_huge_pages(void* data, std::size_t bytes);
 

@@ -111,7 +111,8 @@ struct OneForms {
 /// divergence D = -G^T M_s, M_s holding each sample's measure once a component or, for one-forms,
 /// their inner product; L = D G for operators without a stabilising term of their own.
 struct Discretization {
-  std::string name;        ///< registry name of the operator
+  std::string name;               ///< registry name of the operator
+  DiscretizationOptions options;  ///< those it was made with, defaults settled
   SparseMatrix stiffness;  ///< (N, N), N = V + extra unknowns  [1 on surfaces, length in volumes]
   /// (N, N), sum = area or volume of the virtual refinement  [length^2, length^3]
   SparseMatrix mass;
@@ -184,6 +185,8 @@ class Assembly {
   /// \throws InvalidOption      the coefficient is not a positive finite number somewhere
   virtual void update(const Points& points) = 0;
   const Discretization& discretization() const { return result_; }
+  /// Keeps with the result what it is made with.
+  void set_options(DiscretizationOptions options) { result_.options = std::move(options); }
   /// Moves the result out; the assembly is then spent.
   Discretization release() { return std::move(result_); }
 

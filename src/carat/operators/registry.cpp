@@ -106,7 +106,10 @@ const char* mass_kind_name(MassKind kind) {
 template <class Mesh>
 std::unique_ptr<Assembly> OperatorEntry<Mesh>::prepare(const Mesh& mesh,
                                                        const DiscretizationOptions& wanted) const {
-  return make(mesh, settle(wanted));
+  DiscretizationOptions settled = settle(wanted);
+  std::unique_ptr<Assembly> assembly = make(mesh, settled);
+  assembly->set_options(std::move(settled));
+  return assembly;
 }
 
 template <class Mesh>
@@ -145,6 +148,42 @@ const SurfaceOperator& surface_operator(const std::string& name) {
 
 const VolumeOperator& volume_operator(const std::string& name) {
   return find_operator(volume_operators(), name, "volumes");
+}
+
+namespace {
+
+template <class Mesh>
+SparseMatrix assemble_sparser(const Mesh& mesh, const DiscretizationOptions& options) {
+  DiscretizationOptions own;
+  own.virtual_vertex = options.virtual_vertex;
+  own.eps_rel = options.eps_rel;
+  own.coefficient = options.coefficient;
+  own.cell_coefficient = options.cell_coefficient;
+  own.threads = options.threads;
+  own.parts = DiscretizationParts::Matrices;
+  return discretize(mesh, "bunge", own).stiffness;
+}
+
+template <class Entry, class Mesh>
+std::function<SparseMatrix()> sparser_of(const std::vector<const Entry*>& operators,
+                                         const Mesh& mesh, const Discretization& discretization) {
+  for (const Entry* const entry : operators)
+    if (entry->name == discretization.name && !entry->claims.face_local &&
+        discretization.extra.size() == 0)
+      return [&mesh, options = discretization.options] { return assemble_sparser(mesh, options); };
+  return nullptr;
+}
+
+}  // namespace
+
+std::function<SparseMatrix()> sparser_stiffness(const PolygonMesh& mesh,
+                                                const Discretization& discretization) {
+  return sparser_of(surface_operators(), mesh, discretization);
+}
+
+std::function<SparseMatrix()> sparser_stiffness(const PolyhedralMesh& mesh,
+                                                const Discretization& discretization) {
+  return sparser_of(volume_operators(), mesh, discretization);
 }
 
 Discretization discretize(const PolygonMesh& mesh, const std::string& operator_name,

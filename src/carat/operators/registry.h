@@ -1,6 +1,7 @@
 #pragma once
 // All operators by name.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -87,6 +88,16 @@ const std::vector<const VolumeOperator*>& volume_operators();
 /// \throws InvalidOption  unknown name; the message lists the known ones
 const SurfaceOperator& surface_operator(const std::string& name);
 const VolumeOperator& volume_operator(const std::string& name);
+
+/// For operators that couple more than the vertices of one face or cell: assembles the stiffness of
+/// bunge on the same mesh, with the same coefficient. It has a fifth to a half of the entries and
+/// is spectrally equivalent, so that preconditioners are built from it. Empty: there is nothing
+/// sparser.
+/// \param mesh  must outlive the function
+std::function<SparseMatrix()> sparser_stiffness(const PolygonMesh& mesh,
+                                                const Discretization& discretization);
+std::function<SparseMatrix()> sparser_stiffness(const PolyhedralMesh& mesh,
+                                                const Discretization& discretization);
 
 /// Both phases at once.
 /// \throws InvalidOption, DegenerateElement, InvalidMesh  (a simplex operator on other elements)

@@ -1,36 +1,38 @@
 #pragma once
-// Iterative solution of symmetric positive definite systems.
+// Preconditioned conjugate gradients.
 
-#include <memory>
+#include <functional>
+#include <string>
 #include <vector>
 
-#include "carat/solve/spd_solver.h"
+#include "carat/solve/preconditioner.h"
 
 namespace carat {
 
-/// Conjugate gradients with an incomplete Cholesky factor on the matrix's own pattern (IC(0); where
-/// a pivot fails, of the matrix with a larger diagonal). For large systems of volumes: there a
-/// factorisation costs a hundred times as much, in time and memory.
-class ConjugateGradients {
- public:
-  /// \param matrix,fixed  as for SpdSolver
-  /// \throws SolverFailure  a diagonal entry is not positive
-  explicit ConjugateGradients(const SparseMatrix& matrix, const std::vector<bool>& fixed = {});
-  ~ConjugateGradients();
-
-  /// To a residual of 1e-12 of the right-hand side, both in the norm of the scaled rows.
-  /// \param rhs  (n, k); fixed rows are ignored
-  /// \return (n, k); zero in fixed rows
-  /// \throws SolverFailure  no convergence: says how far it came; the matrix is not positive
-  ///                        definite; values that are not finite
-  Matrix solve(const Matrix& rhs) const;
-
-  /// Entries of the incomplete factor and its seconds.
-  const FactorInfo& info() const;
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+/// How a linear system was solved.
+struct SolveReport {
+  std::string method;    ///< as SolverInfo::method; the factorisation's where it had to take over
+  Index iterations = 0;  ///< of the worst right-hand side; 0: a factorisation
+  double residual = 0;   ///< |b - A x| / |b|, computed anew from the solution, the worst one
 };
+
+/// One iteration's limits.
+struct IterationLimits {
+  double tolerance = 1e-12;  ///< of |b|, for the residual of the recursion
+  double accepted = 1e-10;   ///< of |b|, for the residual computed anew, beside rounding
+  Index iterations = 500;
+};
+
+/// Solves A x = b for symmetric positive definite A.
+///
+/// \param multiply  y = A x; 0 in held-out rows
+/// \param b         (n), 0 in held-out rows
+/// \param size      estimate of the norm of A, for the part of the residual that is rounding
+/// \return (n), 0 in held-out rows
+/// \throws SolverFailure  not within the limits: says the course of the residual; a direction of
+///                        energy <= 0; values that are not finite
+Vector conjugate_gradients(const std::function<void(const Vector&, Vector&)>& multiply,
+                           const Preconditioner& preconditioner, const Vector& b, double size,
+                           const IterationLimits& limits, SolveReport& report);
 
 }  // namespace carat

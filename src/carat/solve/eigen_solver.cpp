@@ -94,7 +94,7 @@ class Pencil final : public InverseOperator {
     std::vector<bool> held(rows.size(), false);
     for (const Index i : ground) held[i] = true;
     try {
-      solver_ = std::make_unique<SpdSolver>(s, held);
+      solver_ = std::make_unique<Cholesky>(s, held);
     } catch (const SolverFailure& failure) {
       if (failure.elements().empty()) throw;
       const Index row = rows[failure.elements()[0]];
@@ -131,7 +131,7 @@ class Pencil final : public InverseOperator {
   std::vector<Index> floating_of_;  // row -> floating component, or -1
   Vector ones_, row_mass_;
   std::vector<double> measure_;
-  std::unique_ptr<SpdSolver> solver_;
+  std::unique_ptr<Cholesky> solver_;
 };
 
 void Pencil::find_floating_components() {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "carat/base/types.h"
-#include "carat/solve/spd_solver.h"
+#include "carat/solve/cholesky.h"
 
 namespace carat {
 

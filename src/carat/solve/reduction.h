@@ -39,4 +39,8 @@ struct Reduction {
   Index size() const { return static_cast<Index>(kept.size()); }
 };
 
+/// The diagonal of the free rows.
+/// \throws SolverFailure  an entry is not positive and finite: names the row
+Vector positive_diagonal(const SparseMatrix& matrix, const Reduction& reduction);
+
 }  // namespace carat

@@ -3,307 +3,272 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <utility>
 
 #include "carat/base/error.h"
-#include "carat/solve/reduction.h"
-
-#ifdef CARAT_WITH_CHOLMOD
-#include <cholmod.h>
-#else
-#include <Eigen/SparseCholesky>
-#endif
+#include "carat/base/parallel.h"
+#include "carat/solve/incomplete_cholesky.h"
+#include "carat/solve/multigrid.h"
 
 namespace carat {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+// Where multigrid becomes the faster way, and from how many right-hand sides on a factorisation
+// pays all the same (docs/performance.md, Solvers). Smaller systems take milliseconds either way.
+constexpr Index kIterativeFrom = 10000;
+constexpr Index kManyOnSurfaces = 8;
+constexpr Index kManyInVolumes = 30;
+/// Part of the free memory that a factor may take.
+constexpr double kMemoryShare = 0.5;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+constexpr std::pair<SolverKind, const char*> kNames[] = {
+    {SolverKind::Auto, "auto"},
+    {SolverKind::Cholesky, "cholesky"},
+    {SolverKind::Multigrid, "multigrid"},
+    {SolverKind::IncompleteCholesky, "incomplete-cholesky"},
+    {SolverKind::SparserCholesky, "sparser-cholesky"},
+};
+
+/// Bytes of a Cholesky factor with its work space, fitted to CHOLMOD on meshes of all kinds, to a
+/// factor of two: nested dissection fills O(n log n) on surfaces and O(n^(4/3)) in volumes.
+double factor_bytes(Index n, double nonzeros, int dimension) {
+  const double size = std::max(2.0, static_cast<double>(n));
+  const double fill = dimension == 2 ? 40 * size * std::log2(size) : 45 * std::pow(size, 4.0 / 3);
+  return fill * std::sqrt(nonzeros / size);
 }
 
-std::string pivot_message(Index row) {
-  return "the matrix is not positive definite: the pivot of row (vertex) " + std::to_string(row) +
-         " is not positive; look for degenerate elements around it, or for a part of the mesh "
-         "without boundary condition";
+std::string gigabytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f GB", bytes * 1e-9);
+  return text;
+}
+
+class FactorPreconditioner final : public Preconditioner {
+ public:
+  FactorPreconditioner(const SparseMatrix& matrix, const std::vector<bool>& fixed)
+      : factor_(matrix, fixed) {}
+  void apply(const Vector& r, Vector& z) const override { z = factor_.solve(r); }
+  std::int64_t nonzeros() const override { return factor_.info().nonzeros; }
+
+ private:
+  Cholesky factor_;
+};
+
+const char* preconditioner_name(SolverKind kind) {
+  switch (kind) {
+    case SolverKind::Multigrid:
+      return "multigrid";
+    case SolverKind::IncompleteCholesky:
+      return "incomplete Cholesky";
+    default:
+      return "Cholesky of the sparser matrix";
+  }
+}
+
+std::unique_ptr<Preconditioner> make_preconditioner(SolverKind kind, const SparseMatrix& matrix,
+                                                    const std::vector<bool>& fixed) {
+  switch (kind) {
+    case SolverKind::Multigrid:
+      return std::make_unique<Multigrid>(matrix, fixed);
+    case SolverKind::IncompleteCholesky:
+      return std::make_unique<IncompleteCholesky>(matrix, fixed);
+    default:
+      return std::make_unique<FactorPreconditioner>(matrix, fixed);
+  }
 }
 
 }  // namespace
 
-#ifdef CARAT_WITH_CHOLMOD
+const char* solver_kind_name(SolverKind kind) {
+  for (const auto& [known, name] : kNames)
+    if (known == kind) return name;
+  return "";
+}
+
+SolverKind solver_kind(const std::string& name) {
+  std::string known;
+  for (const auto& [kind, its_name] : kNames) {
+    if (name == its_name) return kind;
+    known.append(known.empty() ? "" : ", ").append(its_name);
+  }
+  throw InvalidOption("solver '" + name + "' is not known; known are: " + known);
+}
 
 struct SpdSolver::Impl {
-  cholmod_common common;
-  cholmod_factor* factor = nullptr;
-  Reduction reduction;
-  std::vector<double> values;
-  Index full_nonzeros;
-  FactorInfo info;
+  std::shared_ptr<const SparseMatrix> matrix;
+  std::vector<bool> fixed;
+  SolverOptions options;
+  SolverInfo info;
+  std::unique_ptr<Preconditioner> preconditioner;
+  mutable std::unique_ptr<Cholesky> direct;  // also what takes over
+  double matrix_norm = 0;                    // maximum norm
 
-  Impl(const SparseMatrix& matrix, const std::vector<bool>& fixed)
-      : reduction(matrix, fixed), full_nonzeros(static_cast<Index>(matrix.nonZeros())) {
-    cholmod_start(&common);
-    common.print = 0;
-    common.error_handler = nullptr;
-    // LL^T throughout: a non-positive pivot must be an error, not a negative entry of D.
-    common.final_ll = 1;
-  }
-  ~Impl() {
-    cholmod_free_factor(&factor, &common);
-    cholmod_finish(&common);
-  }
+  bool is_fixed(Index row) const { return !fixed.empty() && fixed[static_cast<std::size_t>(row)]; }
+  Index rows() const { return static_cast<Index>(matrix->rows()); }
 
-  void gather(const SparseMatrix& matrix) {
-    values.resize(reduction.source.size());
-    const double* const from = matrix.valuePtr();
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = from[reduction.source[k]];
-  }
-
-  cholmod_sparse view() {
-    cholmod_sparse a{};
-    a.nrow = a.ncol = static_cast<std::size_t>(reduction.size());
-    a.nzmax = values.size();
-    a.p = reduction.offsets.data();
-    a.i = reduction.columns.data();
-    a.x = values.data();
-    a.stype = 1;  // rows of the lower triangle are columns of the upper
-    a.itype = CHOLMOD_INT;
-    a.xtype = CHOLMOD_REAL;
-    a.dtype = CHOLMOD_DOUBLE;
-    a.sorted = 1;
-    a.packed = 1;
-    return a;
-  }
-
-  void check(const char* what) const {
-    if (common.status >= CHOLMOD_OK && common.status != CHOLMOD_NOT_POSDEF) return;
-    if (common.status == CHOLMOD_OUT_OF_MEMORY)
-      throw SolverFailure(std::string(what) + " of " + std::to_string(reduction.size()) +
-                          " unknowns: not enough memory for the factor");
-    if (common.status == CHOLMOD_TOO_LARGE)
-      throw SolverFailure(std::string(what) + " of " + std::to_string(reduction.size()) +
-                          " unknowns: the factor is too large for 32-bit indices");
-    if (common.status < CHOLMOD_OK)
-      throw SolverFailure(std::string(what) + " failed (CHOLMOD status " +
-                          std::to_string(common.status) + ")");
-  }
-
-  void analyse() {
-    const auto start = Clock::now();
-    cholmod_sparse a = view();
-    factor = cholmod_analyze(&a, &common);
-    check("symbolic analysis");
-    info.analyse_seconds = seconds_since(start);
-    const int ordering = common.method[common.selected].ordering;
-    info.ordering = ordering == CHOLMOD_METIS ? "METIS" : ordering == CHOLMOD_AMD ? "AMD" : "other";
-  }
-
-  void factorise() {
-    const auto start = Clock::now();
-    cholmod_sparse a = view();
-    cholmod_factorize(&a, factor, &common);
-    check("factorisation");
-    if (common.status == CHOLMOD_NOT_POSDEF) {
-      const std::size_t column = std::min(factor->minor, factor->n - 1);
-      const Index row = reduction.kept[static_cast<const int*>(factor->Perm)[column]];
-      throw SolverFailure(pivot_message(row), {row});
+  void choose() {
+    info.kind = options.kind;
+    if (options.kind != SolverKind::Auto) return;
+    const bool volume = options.dimension == 3;
+    const Index n = rows() - static_cast<Index>(std::count(fixed.begin(), fixed.end(), true));
+    const double bytes =
+        factor_bytes(n, static_cast<double>(matrix->nonZeros()), options.dimension);
+    const double free = static_cast<double>(available_memory());
+    const Index many = volume ? kManyInVolumes : kManyOnSurfaces;
+    const bool fits = free <= 0 || bytes < kMemoryShare * free;
+    const std::string size =
+        std::to_string(n) + (volume ? " unknowns of a volume" : " unknowns of a surface");
+    info.kind = SolverKind::Multigrid;
+    if (n < kIterativeFrom) {
+      info.kind = SolverKind::Cholesky;
+      info.reason = size + " are few";
+    } else if (!fits) {
+      info.reason = "a factor of " + size + " would take about " + gigabytes(bytes) + " of the " +
+                    gigabytes(free) + " that are free";
+    } else if (options.right_hand_sides >= many) {
+      info.kind = SolverKind::Cholesky;
+      info.reason =
+          std::to_string(options.right_hand_sides) + " right-hand sides pay for the factor";
+    } else {
+      info.reason = size + " and few right-hand sides: no factor of about " + gigabytes(bytes);
     }
-    info.factor_seconds = seconds_since(start);
-    info.method = factor->is_super ? "CHOLMOD supernodal" : "CHOLMOD simplicial";
-    info.nonzeros = static_cast<std::int64_t>(common.lnz);
   }
 
-  void back_solve(Matrix& reduced) const {
-    cholmod_common& mutable_common = const_cast<cholmod_common&>(common);
-    cholmod_dense b{};
-    b.nrow = b.d = static_cast<std::size_t>(reduced.rows());
-    b.ncol = static_cast<std::size_t>(reduced.cols());
-    b.nzmax = b.nrow * b.ncol;
-    b.x = reduced.data();
-    b.xtype = CHOLMOD_REAL;
-    b.dtype = CHOLMOD_DOUBLE;
-    cholmod_dense* x = cholmod_solve(CHOLMOD_A, factor, &b, &mutable_common);
-    check("solution");
-    std::copy_n(static_cast<const double*>(x->x), reduced.size(), reduced.data());
-    cholmod_free_dense(&x, &mutable_common);
-  }
-};
+  void factorise() const { direct = std::make_unique<Cholesky>(*matrix, fixed); }
 
-#else
+  void prepare() {
+    choose();
+    const auto start = std::chrono::steady_clock::now();
+    if (info.kind != SolverKind::Cholesky) prepare_iteration();
+    if (info.kind == SolverKind::Cholesky) {
+      factorise();
+      info.method = direct->info().method;
+      info.ordering = direct->info().ordering;
+      info.nonzeros = direct->info().nonzeros;
+    }
+    info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
 
-struct SpdSolver::Impl {
-  using Lower = Eigen::SparseMatrix<double, Eigen::ColMajor, Index>;
-  Eigen::SimplicialLDLT<Lower, Eigen::Upper> factor;  // unlike LL^T it shows the pivots
-  Reduction reduction;
-  Lower upper;
-  Index full_nonzeros;
-  FactorInfo info;
-
-  Impl(const SparseMatrix& matrix, const std::vector<bool>& fixed)
-      : reduction(matrix, fixed), full_nonzeros(static_cast<Index>(matrix.nonZeros())) {
-    upper.resize(reduction.size(), reduction.size());
-    upper.resizeNonZeros(static_cast<Eigen::Index>(reduction.columns.size()));
-    std::copy(reduction.offsets.begin(), reduction.offsets.end(), upper.outerIndexPtr());
-    std::copy(reduction.columns.begin(), reduction.columns.end(), upper.innerIndexPtr());
-  }
-  void gather(const SparseMatrix& matrix) {
-    for (std::size_t k = 0; k < reduction.source.size(); ++k)
-      upper.valuePtr()[k] = matrix.valuePtr()[reduction.source[k]];
-  }
-  void analyse() {
-    const auto start = Clock::now();
-    factor.analyzePattern(upper);
-    info.analyse_seconds = seconds_since(start);
-    info.ordering = "AMD";
-    info.method = "Eigen simplicial";
-  }
-  void factorise() {
-    const auto start = Clock::now();
-    factor.factorize(upper);
-    for (Eigen::Index k = 0; k < upper.cols(); ++k)
-      if (!(factor.vectorD()[k] > 0)) {
-        const Index row = reduction.kept[factor.permutationPinv().indices()[k]];
-        throw SolverFailure(pivot_message(row), {row});
+  void prepare_iteration() {
+    const bool from_sparser = build_from_sparser();
+    if (!from_sparser) try {
+        preconditioner = make_preconditioner(info.kind, *matrix, fixed);
+      } catch (const SolverFailure& failure) {
+        if (options.kind != SolverKind::Auto) throw;
+        // The factorisation judges, and names the row.
+        info.kind = SolverKind::Cholesky;
+        info.reason = "no multigrid: " + std::string(failure.what());
+        return;
       }
-    info.factor_seconds = seconds_since(start);
-    info.nonzeros = factor.matrixL().nestedExpression().nonZeros();
+    info.method = std::string("conjugate gradients, ") + preconditioner_name(info.kind);
+    if (from_sparser && info.kind != SolverKind::SparserCholesky)
+      info.method += " of the sparser matrix";
+    info.nonzeros = preconditioner->nonzeros();
+    for (Index row = 0; row < rows(); ++row) {
+      if (is_fixed(row)) continue;
+      double sum = 0;
+      for (SparseMatrix::InnerIterator entry(*matrix, row); entry; ++entry)
+        sum += std::abs(entry.value());
+      matrix_norm = std::max(matrix_norm, sum);
+    }
   }
-  void back_solve(Matrix& reduced) const { reduced = factor.solve(reduced).eval(); }
+
+  /// \return false: there is no sparser matrix, or it is not definite where the matrix may be
+  bool build_from_sparser() {
+    if (!options.sparser) return false;
+    const SparseMatrix sparser = options.sparser();
+    if (sparser.rows() != matrix->rows() || sparser.cols() != matrix->cols())
+      throw InvalidOption("the sparser matrix has " + std::to_string(sparser.rows()) +
+                          " rows, the matrix " + std::to_string(matrix->rows()));
+    try {
+      preconditioner = make_preconditioner(info.kind, sparser, fixed);
+    } catch (const SolverFailure&) {
+      return false;
+    }
+    return true;
+  }
+
+  void multiply(const Vector& x, Vector& y) const {
+    const Index* const offsets = matrix->outerIndexPtr();
+    const Index* const columns = matrix->innerIndexPtr();
+    const double* const values = matrix->valuePtr();
+    parallel_blocks(rows(), options.threads, [&](int, Index begin, Index end) {
+      for (Index row = begin; row < end; ++row) {
+        double sum = 0;
+        if (!is_fixed(row))
+          for (Index k = offsets[row]; k < offsets[row + 1]; ++k) sum += values[k] * x[columns[k]];
+        y[row] = sum;
+      }
+    });
+  }
+
+  Vector iterate(const Vector& rhs, SolveReport& report) const {
+    Vector b = rhs;
+    for (Index row = 0; row < rows(); ++row)
+      if (is_fixed(row)) b[row] = 0;
+    return conjugate_gradients([&](const Vector& x, Vector& y) { multiply(x, y); }, *preconditioner,
+                               b, matrix_norm, {}, report);
+  }
+
+  Matrix solve(const Matrix& rhs, SolveReport& report) const {
+    report.method = info.method;
+    if (!direct) try {
+        Matrix result(rhs.rows(), rhs.cols());
+        for (Eigen::Index k = 0; k < rhs.cols(); ++k) result.col(k) = iterate(rhs.col(k), report);
+        return result;
+      } catch (const SolverFailure&) {
+        if (options.kind != SolverKind::Auto || !rhs.allFinite()) throw;
+        report = {};
+        factorise();
+      }
+    report.method = direct->info().method;
+    Matrix result = direct->solve(rhs);
+    Vector product(rhs.rows());
+    for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
+      multiply(result.col(k), product);
+      double error = 0, norm = 0;
+      for (Index row = 0; row < rows(); ++row) {
+        if (is_fixed(row)) continue;
+        error += std::pow(rhs(row, k) - product[row], 2);
+        norm += std::pow(rhs(row, k), 2);
+      }
+      if (norm > 0) report.residual = std::max(report.residual, std::sqrt(error / norm));
+    }
+    return result;
+  }
 };
 
-#endif
-
-SpdSolver::SpdSolver(const SparseMatrix& matrix, const std::vector<bool>& fixed) {
-  if (matrix.rows() != matrix.cols())
-    throw InvalidOption("a matrix of " + std::to_string(matrix.rows()) + " rows and " +
-                        std::to_string(matrix.cols()) + " columns is not symmetric");
-  if (!fixed.empty() && fixed.size() != static_cast<std::size_t>(matrix.rows()))
+SpdSolver::SpdSolver(std::shared_ptr<const SparseMatrix> matrix, std::vector<bool> fixed,
+                     const SolverOptions& options)
+    : impl_(std::make_unique<Impl>()) {
+  if (matrix->rows() != matrix->cols())
+    throw InvalidOption("a matrix of " + std::to_string(matrix->rows()) + " rows and " +
+                        std::to_string(matrix->cols()) + " columns is not symmetric");
+  if (!fixed.empty() && fixed.size() != static_cast<std::size_t>(matrix->rows()))
     throw InvalidOption(std::to_string(fixed.size()) + " flags for " +
-                        std::to_string(matrix.rows()) + " rows");
-  impl_ = std::make_unique<Impl>(matrix, fixed);
-  if (impl_->reduction.size() == 0) return;
-  impl_->gather(matrix);
-  impl_->analyse();
-  impl_->factorise();
+                        std::to_string(matrix->rows()) + " rows");
+  impl_->matrix = std::move(matrix);
+  impl_->fixed = std::move(fixed);
+  impl_->options = options;
+  impl_->prepare();
+  impl_->options.sparser = nullptr;
 }
 
 SpdSolver::~SpdSolver() = default;
 SpdSolver::SpdSolver(SpdSolver&&) noexcept = default;
 SpdSolver& SpdSolver::operator=(SpdSolver&&) noexcept = default;
 
-void SpdSolver::refactor(const SparseMatrix& matrix) {
-  if (matrix.rows() != static_cast<Eigen::Index>(impl_->reduction.reduced_of.size()) ||
-      matrix.nonZeros() != impl_->full_nonzeros)
-    throw InvalidOption("refactor needs a matrix with the pattern of the first one");
-  if (impl_->reduction.size() == 0) return;
-  impl_->gather(matrix);
-  impl_->factorise();
-}
-
-Matrix SpdSolver::solve(const Matrix& rhs) const {
-  const Reduction& reduction = impl_->reduction;
-  if (rhs.rows() != static_cast<Eigen::Index>(reduction.reduced_of.size()))
+Matrix SpdSolver::solve(const Matrix& rhs, SolveReport* report) const {
+  if (rhs.rows() != impl_->matrix->rows())
     throw InvalidOption("a right-hand side of " + std::to_string(rhs.rows()) + " rows for " +
-                        std::to_string(reduction.reduced_of.size()) + " unknowns");
-  Matrix result = Matrix::Zero(rhs.rows(), rhs.cols());
-  if (reduction.size() == 0 || rhs.cols() == 0) return result;
-  Matrix reduced(reduction.size(), rhs.cols());
-  for (Eigen::Index k = 0; k < rhs.cols(); ++k)
-    for (Index i = 0; i < reduction.size(); ++i) reduced(i, k) = rhs(reduction.kept[i], k);
-  impl_->back_solve(reduced);
-  if (!reduced.allFinite())
-    throw SolverFailure(
-        "the solution is not finite: the right-hand side or the matrix holds "
-        "values that are not, or the system is numerically singular");
-  for (Eigen::Index k = 0; k < rhs.cols(); ++k)
-    for (Index i = 0; i < reduction.size(); ++i) result(reduction.kept[i], k) = reduced(i, k);
+                        std::to_string(impl_->matrix->rows()) + " unknowns");
+  SolveReport own;
+  Matrix result = impl_->solve(rhs, own);
+  if (report) *report = own;
   return result;
 }
 
-const FactorInfo& SpdSolver::info() const { return impl_->info; }
-
-std::vector<Index> matrix_components(const SparseMatrix& matrix) {
-  const Index n = static_cast<Index>(matrix.rows());
-  std::vector<Index> component(static_cast<std::size_t>(n), -1);
-  std::vector<Index> stack;
-  Index next = 0;
-  for (Index seed = 0; seed < n; ++seed) {
-    if (component[seed] >= 0) continue;
-    bool empty = true;
-    for (SparseMatrix::InnerIterator entry(matrix, seed); entry && empty; ++entry)
-      empty = entry.value() == 0;
-    if (empty) continue;
-    component[seed] = next;
-    stack.push_back(seed);
-    while (!stack.empty()) {
-      const Index row = stack.back();
-      stack.pop_back();
-      for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
-        if (entry.value() != 0 && component[entry.col()] < 0) {
-          component[entry.col()] = next;
-          stack.push_back(static_cast<Index>(entry.col()));
-        }
-    }
-    ++next;
-  }
-  return component;
-}
-
-SemidefiniteSolver::SemidefiniteSolver(const SparseMatrix& matrix)
-    : components_(matrix_components(matrix)) {
-  const Index n = static_cast<Index>(matrix.rows());
-  for (const Index c : components_) n_components_ = std::max(n_components_, c + 1);
-  sizes_.assign(static_cast<std::size_t>(n_components_), 0);
-  // Ground the row with the largest diagonal of each component: the best determined one.
-  std::vector<Index> ground(static_cast<std::size_t>(n_components_), -1);
-  const Vector diagonal = matrix.diagonal();
-  for (Index row = 0; row < n; ++row) {
-    const Index c = components_[row];
-    if (c < 0) continue;
-    ++sizes_[c];
-    if (ground[c] < 0 || diagonal[row] > diagonal[ground[c]]) ground[c] = row;
-  }
-  std::vector<bool> fixed(static_cast<std::size_t>(n), false);
-  for (Index row = 0; row < n; ++row) fixed[row] = components_[row] < 0;
-  for (const Index row : ground) fixed[row] = true;
-  solver_ = std::make_unique<SpdSolver>(matrix, fixed);
-}
-
-Matrix SemidefiniteSolver::solve(Matrix rhs) const {
-  const auto remove_means = [&](Matrix& values) {
-    for (Eigen::Index k = 0; k < values.cols(); ++k) {
-      std::vector<double> sum(sizes_.size(), 0.0);
-      for (std::size_t row = 0; row < components_.size(); ++row)
-        if (components_[row] >= 0) sum[components_[row]] += values(static_cast<Index>(row), k);
-      for (std::size_t row = 0; row < components_.size(); ++row) {
-        const Index c = components_[row];
-        if (c >= 0)
-          values(static_cast<Index>(row), k) -= sum[c] / sizes_[c];
-        else
-          values(static_cast<Index>(row), k) = 0;
-      }
-    }
-  };
-  if (rhs.rows() != static_cast<Eigen::Index>(components_.size()))
-    throw InvalidOption("a right-hand side of " + std::to_string(rhs.rows()) + " rows for " +
-                        std::to_string(components_.size()) + " unknowns");
-  remove_means(rhs);
-  Matrix result = solver_->solve(rhs);
-  remove_means(result);
-  return result;
-}
-
-double SemidefiniteSolver::imbalance(const Vector& rhs) const {
-  std::vector<double> sum(sizes_.size(), 0.0), total(sizes_.size(), 0.0);
-  for (std::size_t row = 0; row < components_.size(); ++row)
-    if (components_[row] >= 0) {
-      sum[components_[row]] += rhs[static_cast<Index>(row)];
-      total[components_[row]] += std::abs(rhs[static_cast<Index>(row)]);
-    }
-  double worst = 0;
-  for (std::size_t c = 0; c < sum.size(); ++c)
-    if (total[c] > 0) worst = std::max(worst, std::abs(sum[c]) / total[c]);
-  return worst;
-}
+const SolverInfo& SpdSolver::info() const { return impl_->info; }
 
 }  // namespace carat

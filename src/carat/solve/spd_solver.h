@@ -1,86 +1,76 @@
 #pragma once
-// Direct solution of symmetric positive (semi)definite systems.
+// Symmetric positive definite systems: one interface to all ways of solving them.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "carat/base/types.h"
+#include "carat/solve/cholesky.h"
+#include "carat/solve/conjugate_gradients.h"
 
 namespace carat {
 
-/// What a factorisation cost and gave.
-struct FactorInfo {
-  std::string method;         ///< e.g. "CHOLMOD supernodal"
-  std::string ordering;       ///< fill-reducing ordering that was chosen
-  std::int64_t nonzeros = 0;  ///< in the factor
-  double analyse_seconds = 0, factor_seconds = 0;
+enum class SolverKind {
+  Auto,                ///< chosen by dimension, size, number of right-hand sides and memory
+  Cholesky,            ///< factorisation of the matrix
+  Multigrid,           ///< conjugate gradients; preconditioned by multigrid,
+  IncompleteCholesky,  ///< by an incomplete factor,
+  SparserCholesky,     ///< by a factorisation of the sparser matrix
 };
 
-/// Cholesky factorisation of one matrix, kept for many right-hand sides.
+/// "auto", "cholesky", "multigrid", "incomplete-cholesky", "sparser-cholesky".
+const char* solver_kind_name(SolverKind kind);
+/// \throws InvalidOption  unknown name; the message lists the known ones
+SolverKind solver_kind(const std::string& name);
+
+struct SolverOptions {
+  SolverKind kind = SolverKind::Auto;
+  Index right_hand_sides = 1;  ///< how many are expected: many pay for a factorisation
+  int dimension = 2;           ///< of the mesh: factors of volumes fill much faster
+  /// Makes a matrix of fewer entries that is spectrally equivalent, from which preconditioners are
+  /// built. Empty: they are built from the matrix itself.
+  std::function<SparseMatrix()> sparser{};
+  int threads = 0;  ///< of products with the matrix; 0: all the machine has
+};
+
+/// What was chosen, and what it cost to set up.
+struct SolverInfo {
+  SolverKind kind = SolverKind::Cholesky;
+  std::string method;         ///< e.g. "conjugate gradients, multigrid"
+  std::string reason;         ///< why; empty where the caller chose
+  std::string ordering;       ///< of a factorisation
+  std::int64_t nonzeros = 0;  ///< in the factor or preconditioner
+  double seconds = 0;         ///< to set it up
+};
+
+/// Solves A x = b for many right-hand sides, by a factorisation or by conjugate gradients.
 ///
-/// Rows can be held out of the system ("fixed"): solve() then treats their unknowns as zero, which
-/// is how Dirichlet data, vertices without faces and the constants of a semidefinite system are
-/// dealt with.
+/// Rows can be held out ("fixed") as in Cholesky. Where Auto chose an iteration and it fails, a
+/// factorisation takes over. Solutions of an iteration have a residual of 1e-12 of the right-hand
+/// side or of its rounding, checked anew; none beyond 1e-10 is returned.
 class SpdSolver {
  public:
-  /// \param matrix  symmetric; entries above and below the diagonal must agree
+  /// \param matrix  symmetric; shared, not copied
   /// \param fixed   empty, or one flag a row: rows and columns to leave out
-  /// \throws SolverFailure  not positive definite: names the row of the failing pivot
-  explicit SpdSolver(const SparseMatrix& matrix, const std::vector<bool>& fixed = {});
+  /// \throws SolverFailure  not positive definite, as far as the set-up sees
+  explicit SpdSolver(std::shared_ptr<const SparseMatrix> matrix, std::vector<bool> fixed = {},
+                     const SolverOptions& options = {});
   ~SpdSolver();
   SpdSolver(SpdSolver&&) noexcept;
   SpdSolver& operator=(SpdSolver&&) noexcept;
 
-  /// New values on the same pattern: no new symbolic analysis.
-  /// \throws SolverFailure  not positive definite
-  /// \throws InvalidOption  another pattern
-  void refactor(const SparseMatrix& matrix);
-
-  /// \param rhs  (n, k): k right-hand sides; fixed rows are ignored
+  /// \param rhs     (n, k): k right-hand sides; fixed rows are ignored
+  /// \param report  if given: how it went
   /// \return (n, k); zero in fixed rows
-  /// \throws SolverFailure  the solution is not finite
-  Matrix solve(const Matrix& rhs) const;
+  /// \throws SolverFailure  no solution within the limits, with the course of the residuals
+  Matrix solve(const Matrix& rhs, SolveReport* report = nullptr) const;
 
-  const FactorInfo& info() const;
+  const SolverInfo& info() const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// The solution operator of a symmetric positive semidefinite matrix whose kernel is spanned by
-/// the constants of its connected components: a stiffness matrix without boundary conditions.
-///
-/// Works in the complement of the constants: one unknown a component is held at zero, the
-/// solution is then shifted to mean zero. Rows without entries are excluded; their value is 0.
-class SemidefiniteSolver {
- public:
-  /// \throws SolverFailure  a pivot fails though every component is grounded
-  explicit SemidefiniteSolver(const SparseMatrix& matrix);
-
-  /// \param rhs  (n, k). Its mean over each component is subtracted: see imbalance().
-  /// \return (n, k), mean zero over each component
-  Matrix solve(Matrix rhs) const;
-
-  /// |sum of rhs| / sum |rhs| over the worst component: 0 for a compatible right-hand side.
-  double imbalance(const Vector& rhs) const;
-
-  /// Component of every row by non-zero entries, numbered by first row; -1 for empty rows.
-  const std::vector<Index>& components() const { return components_; }
-  Index n_components() const { return n_components_; }
-  const FactorInfo& info() const { return solver_->info(); }
-
- private:
-  std::vector<Index> components_;
-  std::vector<Index> sizes_;
-  Index n_components_ = 0;
-  std::unique_ptr<SpdSolver> solver_;
-};
-
-/// Connected components of a matrix by its non-zero off-diagonal values, numbered by first row;
-/// -1 for rows without a non-zero entry.
-/// Cost: O(nnz).
-std::vector<Index> matrix_components(const SparseMatrix& matrix);
 
 }  // namespace carat
