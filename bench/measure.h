@@ -7,9 +7,13 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <fstream>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "carat/base/memory.h"
@@ -44,6 +48,41 @@ double peak_megabytes(const Work& work) {
   rusage usage{};
   wait4(child, &status, 0, &usage);
   return WIFEXITED(status) ? static_cast<double>(usage.ru_maxrss) / 1024 : -1;
+}
+
+/// The largest memory of this process so far.  [MB]
+/// \param afresh  what it was is forgotten: from now on it is that of what follows
+inline double peak_rss_megabytes(bool afresh) {
+  if (afresh) std::ofstream("/proc/self/clear_refs") << 5;
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / 1024;
+  return 0;
+}
+
+/// Runs `work` in a process of its own.
+/// \return what it returns, or a default value where it fails
+template <class Result, class Work>
+Result in_process(const Work& work) {
+  static_assert(std::is_trivially_copyable_v<Result>);
+  int ends[2];
+  if (pipe(ends) != 0) return {};
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      const Result result = work();
+      std::_Exit(write(ends[1], &result, sizeof result) == sizeof result ? 0 : 1);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      std::_Exit(1);
+    }
+  }
+  close(ends[1]);
+  Result result{};
+  const bool whole = read(ends[0], &result, sizeof result) == sizeof result;
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  return whole ? result : Result{};
 }
 
 /// Keeps the best time of every benchmark, for the table of ratios.
