@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <map>
 #include <string>
 #include <type_traits>
@@ -48,16 +47,6 @@ double peak_megabytes(const Work& work) {
   rusage usage{};
   wait4(child, &status, 0, &usage);
   return WIFEXITED(status) ? static_cast<double>(usage.ru_maxrss) / 1024 : -1;
-}
-
-/// The largest memory of this process so far.  [MB]
-/// \param afresh  what it was is forgotten: from now on it is that of what follows
-inline double peak_rss_megabytes(bool afresh) {
-  if (afresh) std::ofstream("/proc/self/clear_refs") << 5;
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / 1024;
-  return 0;
 }
 
 /// Runs `work` in a process of its own.

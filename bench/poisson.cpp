@@ -7,6 +7,8 @@
 //
 // Names are OPERATOR/SOLVER/MESH/VERTICES/threads:N. CARAT_BENCH_LARGEST leaves out larger meshes.
 
+#include "carat/apps/poisson.h"
+
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -16,7 +18,7 @@
 #include <tuple>
 #include <vector>
 
-#include "carat/apps/poisson.h"
+#include "carat/base/memory.h"
 #include "carat/mesh/statistics.h"
 #include "carat/operators/registry.h"
 #include "grids.h"
@@ -60,7 +62,8 @@ Outcome solve(const Case& wanted, const Mesh& whole) {
   const BoundaryConditions conditions = zero_on_boundary(whole);
   const Mesh mesh = bare_copy(whole);
   Outcome outcome;
-  const double before = peak_rss_megabytes(true);
+  restart_peak_memory();
+  const auto before = static_cast<double>(peak_memory());
   double start = now();
   DiscretizationOptions options;
   options.parts = DiscretizationParts::Matrices;
@@ -74,7 +77,7 @@ Outcome solve(const Case& wanted, const Mesh& whole) {
   start = now();
   const PoissonSolution solution = poisson.solve(Vector::Ones(mesh.n_vertices()));
   outcome.solution = now() - start;
-  outcome.megabytes = peak_rss_megabytes(false) - before;
+  outcome.megabytes = (static_cast<double>(peak_memory()) - before) / (1 << 20);
   outcome.residual = solution.solve.residual;
   outcome.iterations = solution.solve.iterations;
   outcome.entries = static_cast<double>(d.stiffness.nonZeros());
@@ -144,9 +147,9 @@ void print_ratios() {
             .c_str(),
         ratio("diamond", "cholesky", [&](const Outcome& o) { return o.total() / diamond.total(); })
             .c_str(),
-        ratio("diamond", "cholesky",
-              [&](const Outcome& o) { return o.megabytes / diamond.megabytes; })
-            .c_str());
+        ratio("diamond", "cholesky", [&](const Outcome& o) {
+          return o.megabytes / diamond.megabytes;
+        }).c_str());
   }
 }
 

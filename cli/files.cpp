@@ -62,11 +62,19 @@ std::pair<Index, Index> extreme_rows(const Vector& values) {
   return {least, largest};
 }
 
+/// 0 where it is a folder.
+double file_bytes(const std::string& path) {
+  std::error_code error;
+  const auto bytes = fs::file_size(path, error);
+  return error ? 0 : static_cast<double>(bytes);
+}
+
 }  // namespace
 
 MeshData read_input(Session& session, const std::string& path) {
   session.report()["input"] = path;
   MeshData data = session.phase("read", [&] { return read_mesh(path); });
+  session.moved("read", file_bytes(path));
   std::visit(
       [&](const auto& held) {
         session.report()["kind"] = words(held.mesh).name;
@@ -142,6 +150,7 @@ void write_output(Session& session, const std::string& path, const std::string& 
       write_surface(path, surface.mesh, surface.fields);
     }
   });
+  session.moved("write", file_bytes(path));
   session.report()["output"] = path;
   session.say("written: " + path);
 }

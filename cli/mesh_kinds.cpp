@@ -26,6 +26,34 @@ Json sizes_to_json(const PolyhedralMesh& mesh) {
   return sizes;
 }
 
+PolygonMesh underived(const PolygonMesh& mesh) { return PolygonMesh(mesh.points(), mesh.faces()); }
+
+PolyhedralMesh underived(const PolyhedralMesh& mesh) {
+  return PolyhedralMesh(mesh.points(), mesh.face_mesh().faces(), mesh.cells());
+}
+
+namespace {
+
+double assembly_bytes(Index n_vertices, double connectivity, const Discretization& d) {
+  constexpr double kPoint = 3 * sizeof(double), kEntry = sizeof(double) + sizeof(Index);
+  const double entries = static_cast<double>(d.stiffness.nonZeros()) +
+                         static_cast<double>(d.mass.nonZeros()) +
+                         static_cast<double>(d.gradient.nonZeros());
+  return kPoint * n_vertices + sizeof(Index) * connectivity + kEntry * entries;
+}
+
+}  // namespace
+
+double assembly_bytes(const PolygonMesh& mesh, const Discretization& discretization) {
+  return assembly_bytes(mesh.n_vertices(), mesh.n_corners(), discretization);
+}
+
+double assembly_bytes(const PolyhedralMesh& mesh, const Discretization& discretization) {
+  const double connectivity =
+      mesh.face_mesh().n_corners() + static_cast<double>(mesh.cells().indices.size());
+  return assembly_bytes(mesh.n_vertices(), connectivity, discretization);
+}
+
 BoundarySide boundary_side(const PolygonMesh& mesh, Index edge) {
   const std::array<Index, 2>& ends = mesh.edges().vertices[static_cast<std::size_t>(edge)];
   return {edge, ends, mesh.point(ends[0]) / 2 + mesh.point(ends[1]) / 2};

@@ -63,6 +63,15 @@ BoundarySide boundary_side(const PolygonMesh& mesh, Index edge);
 /// Centroid of a face, by the area of its triangles about the mean of its vertices.
 BoundarySide boundary_side(const PolyhedralMesh& mesh, Index face);
 
+/// The same mesh without the connectivity that has been derived so far: what has to derive it pays.
+PolygonMesh underived(const PolygonMesh& mesh);
+PolyhedralMesh underived(const PolyhedralMesh& mesh);
+
+/// What the numeric phase has to move at least: points and connectivity once, of every matrix the
+/// columns read and the values written.
+double assembly_bytes(const PolygonMesh& mesh, const Discretization& discretization);
+double assembly_bytes(const PolyhedralMesh& mesh, const Discretization& discretization);
+
 /// Edges of one face, faces of one cell; ascending.
 std::vector<Index> boundary_sides(const PolygonMesh& mesh);
 std::vector<Index> boundary_sides(const PolyhedralMesh& mesh);

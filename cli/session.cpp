@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "carat/base/error.h"
+#include "carat/base/memory.h"
 #include "carat/base/parallel.h"
 
 namespace carat::cli {
@@ -54,20 +55,31 @@ Session::Phase::Phase(Session& owner, const char* phase)
     : session(owner), name(phase), start(std::chrono::steady_clock::now()), line(phase) {}
 
 Session::Phase::~Phase() {
-  session.seconds_of(name) +=
+  session.cost_of(name).seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-double& Session::seconds_of(const std::string& phase) {
-  const auto known = std::find_if(seconds_.begin(), seconds_.end(),
-                                  [&](const auto& entry) { return entry.first == phase; });
-  return known != seconds_.end() ? known->second : seconds_.emplace_back(phase, 0.0).second;
+Session::PhaseCost& Session::cost_of(const std::string& phase) {
+  const auto known = std::find_if(costs_.begin(), costs_.end(),
+                                  [&](const PhaseCost& cost) { return cost.name == phase; });
+  return known != costs_.end() ? *known : costs_.emplace_back(PhaseCost{phase});
 }
+
+void Session::moved(const char* phase, double bytes) { cost_of(phase).bytes += bytes; }
 
 Json Session::snapshot() const {
   Json object = report_;
   object["seconds"] = Json::object();
-  for (const auto& [phase, seconds] : seconds_) object["seconds"][phase] = seconds;
+  object["profile"] = Json::object();
+  for (const PhaseCost& cost : costs_) {
+    object["seconds"][cost.name] = cost.seconds;
+    const bool known = cost.bytes > 0 && cost.seconds > 0;
+    object["profile"][cost.name] = {
+        {"seconds", cost.seconds},
+        {"bytes", known ? Json(cost.bytes) : Json(nullptr)},
+        {"GB_per_s", known ? Json(1e-9 * cost.bytes / cost.seconds) : Json(nullptr)}};
+  }
+  object["peak_memory"] = peak_memory();
   if (!notes_.empty()) object["notes"] = notes_;
   object["diagnostics"] = diagnostics_;
   return object;
@@ -79,10 +91,10 @@ void Session::finish() {
     return;
   }
   std::string line;
-  for (const auto& [phase, seconds] : seconds_) {
+  for (const PhaseCost& cost : costs_) {
     char entry[32];
-    std::snprintf(entry, sizeof entry, " %.3g s", seconds);
-    line += (line.empty() ? "time: " : ", ") + phase + entry;
+    std::snprintf(entry, sizeof entry, " %.3g s", cost.seconds);
+    line += (line.empty() ? "time: " : ", ") + cost.name + entry;
   }
   if (!line.empty()) say(line);
   flush_output();

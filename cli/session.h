@@ -45,6 +45,9 @@ class Session {
     return std::forward<Work>(work)();
   }
 
+  /// Adds to the bytes that a phase has to read and write at least, for its rate.
+  void moved(const char* phase, double bytes);
+
   /// What the program returns when nothing is thrown; 0 unless set.
   void set_exit_code(int code) { exit_code_ = code; }
   int exit_code() const { return exit_code_; }
@@ -66,12 +69,16 @@ class Session {
     std::chrono::steady_clock::time_point start;
     ProgressLine line;
   };
-  double& seconds_of(const std::string& phase);
+  struct PhaseCost {
+    std::string name;
+    double seconds = 0, bytes = 0;
+  };
+  PhaseCost& cost_of(const std::string& phase);
 
   CommonOptions options_;
   int exit_code_ = 0;
   Json report_;
-  std::vector<std::pair<std::string, double>> seconds_;
+  std::vector<PhaseCost> costs_;
   Json notes_ = Json::array();
   Json diagnostics_ = Json::object();
 };

@@ -5,21 +5,38 @@
 #include <fstream>
 #include <string>
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
 
 namespace carat {
 namespace {
+
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+/// A value of lines "key: number kB".  [bytes]
+std::size_t kilobytes_in(const char* path, const std::string& wanted) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(wanted))
+      return std::strtoull(line.c_str() + wanted.size(), nullptr, 10) * 1024;
+  return 0;
 }
 
-std::size_t available_memory() {
-  std::ifstream file("/proc/meminfo");
-  std::string key, unit;
-  for (std::size_t kilobytes = 0; file >> key >> kilobytes; std::getline(file, unit))
-    if (key == "MemAvailable:") return kilobytes * 1024;
-  return 0;
+}  // namespace
+
+std::size_t available_memory() { return kilobytes_in("/proc/meminfo", "MemAvailable:"); }
+
+std::size_t peak_memory() { return kilobytes_in("/proc/self/status", "VmHWM:"); }
+
+void restart_peak_memory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+  std::ofstream("/proc/self/clear_refs") << 5;
 }
 
 void advise_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {

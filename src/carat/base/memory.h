@@ -13,6 +13,12 @@ namespace carat {
 /// Bytes that can be allocated without swapping, as the system estimates; 0: unknown.
 std::size_t available_memory();
 
+/// The most bytes of main memory that the process has held, since it started or since
+/// restart_peak_memory(); 0: unknown.
+std::size_t peak_memory();
+/// Gives memory that is free back and forgets the peak so far, where the system allows it.
+void restart_peak_memory();
+
 /// Asks the kernel to back [data, data + bytes) with huge pages. A hint: never fails.
 void advise_huge_pages(void* data, std::size_t bytes);
 

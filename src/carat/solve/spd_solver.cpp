@@ -80,6 +80,12 @@ std::unique_ptr<Preconditioner> make_preconditioner(SolverKind kind, const Spars
 
 }  // namespace
 
+std::vector<SolverKind> solver_kinds() {
+  std::vector<SolverKind> kinds;
+  for (const auto& [kind, name] : kNames) kinds.push_back(kind);
+  return kinds;
+}
+
 const char* solver_kind_name(SolverKind kind) {
   for (const auto& [known, name] : kNames)
     if (known == kind) return name;

@@ -19,6 +19,8 @@ enum class SolverKind {
   SparserCholesky,     ///< by a factorisation of the sparser matrix
 };
 
+/// All of them, Auto first.
+std::vector<SolverKind> solver_kinds();
 /// "auto", "cholesky", "multigrid", "incomplete-cholesky", "sparser-cholesky".
 const char* solver_kind_name(SolverKind kind);
 /// \throws InvalidOption  unknown name; the message lists the known ones
