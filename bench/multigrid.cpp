@@ -77,13 +77,6 @@ struct Method {
   std::function<std::unique_ptr<Preconditioner>(const System&)> make;
 };
 
-template <class Own>
-Method own(const char* name) {
-  return {name, [](const System& system) {
-            return std::make_unique<Own>(system.sparser, std::vector<bool>{});
-          }};
-}
-
 class Jacobi final : public Preconditioner {
  public:
   explicit Jacobi(const System& system) : inverse_(system.sparser.diagonal().cwiseInverse()) {}
@@ -249,11 +242,17 @@ Method dune_krylov(const char* name, const DuneOptions& options) {
 
 std::vector<Method> methods() {
   std::vector<Method> result{
-      own<Multigrid>("own multigrid"),
-      own<IncompleteCholesky>("own IC(0)"),
+      {"own multigrid",
+       [](const System& system) {
+         return std::make_unique<Multigrid>(system.sparser, std::vector<bool>{}, 1);
+       }},
+      {"own IC(0)",
+       [](const System& system) {
+         return std::make_unique<IncompleteCholesky>(system.sparser, std::vector<bool>{});
+       }},
       {"own multigrid of S",
        [](const System& system) {
-         return std::make_unique<Multigrid>(system.stiffness, std::vector<bool>{});
+         return std::make_unique<Multigrid>(system.stiffness, std::vector<bool>{}, 1);
        }},
       {"cholesky", [](const System& system) { return std::make_unique<Factor>(system.stiffness); }},
       {"sparser cholesky",

@@ -4,46 +4,31 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "carat/base/error.h"
+#include "carat/solve/multigrid/coarsening.h"
 #include "carat/solve/reduction.h"
 
 namespace carat {
 namespace {
 
-using Real = float;
+using multigrid::Real;
+using multigrid::Rows;
 
-/// Couplings of less than this part of the largest one of both rows are weak.
-constexpr Real kStrong = 0.1F;
 /// Levels of so few rows are solved by a dense factorisation.
 constexpr Index kCoarsest = 300;
-/// A level that is hardly smaller than the one before is not worth having.
-constexpr double kLeastReduction = 0.8;
 /// Where coarsening stalls, up to so many rows are still solved exactly.
 constexpr Index kLargestDense = 2000;
-constexpr int kPowerSteps = 8;
-/// What the power iteration may miss of the largest eigenvalue.
-constexpr double kPowerMargin = 1.1;
-/// Taking weak couplings to the diagonal must leave this part of it.
-constexpr Real kLeastDiagonal = 0.1F;
 
-/// Compressed rows in single precision.
-struct Rows {
-  Array<Index> offsets{0}, columns;
-  Array<Real> values;
-};
-
-/// One level: its matrix, and what leads to the next.
-struct Level {
-  Rows matrix;          // off the diagonal, columns ascending
+/// One level of a cycle.
+struct Level : multigrid::LevelMatrices {
   Array<Index> middle;  // row -> its first entry to the right of the diagonal
-  Array<Real> diagonal, inverse_diagonal;
-  Rows prolongation, restriction;  // transposes of each other
+  Array<Real> inverse_diagonal;
   mutable Array<Real> x, b, residual;
 
-  Index size() const { return static_cast<Index>(diagonal.size()); }
-
-  void complete() {
+  explicit Level(multigrid::LevelMatrices&& matrices)
+      : multigrid::LevelMatrices(std::move(matrices)) {
     const Index n = size();
     const auto count = static_cast<std::size_t>(n);
     inverse_diagonal.resize(count);
@@ -88,256 +73,6 @@ struct Level {
   }
 };
 
-/// Which entries couple strongly, and the diagonal of the matrix in which the others are added to
-/// it: the strong part has the same row sums.
-struct StrongPart {
-  Array<unsigned char> is_strong;
-  Array<Index> offsets, columns;
-  Array<Real> diagonal;
-
-  explicit StrongPart(const Level& level) {
-    const Index n = level.size();
-    const Rows& a = level.matrix;
-    Array<Real> largest(static_cast<std::size_t>(n));
-    for (Index i = 0; i < n; ++i) {
-      largest[i] = 0;
-      for (Index k = a.offsets[i]; k < a.offsets[i + 1]; ++k)
-        largest[i] = std::max(largest[i], -a.values[k]);
-    }
-    is_strong.resize(a.columns.size());
-    columns.resize(a.columns.size());
-    offsets.resize(static_cast<std::size_t>(n) + 1);
-    diagonal.resize(static_cast<std::size_t>(n));
-    Index end = 0;
-    offsets[0] = 0;
-    for (Index i = 0; i < n; ++i) {
-      Real weak = 0;
-      for (Index k = a.offsets[i]; k < a.offsets[i + 1]; ++k) {
-        const Index j = a.columns[k];
-        const Real limit = kStrong * std::min(largest[i], largest[j]);
-        const bool strong = limit > 0 && -a.values[k] >= limit;
-        is_strong[k] = strong;
-        if (strong)
-          columns[end++] = j;
-        else
-          weak += a.values[k];
-      }
-      const Real own = level.diagonal[i];
-      diagonal[i] = own + weak > kLeastDiagonal * own ? own + weak : own;
-      offsets[i + 1] = end;
-    }
-    columns.resize(static_cast<std::size_t>(end));
-  }
-  bool isolated(Index row) const { return offsets[row] == offsets[row + 1]; }
-};
-
-struct Aggregates {
-  Array<Index> of_row;  // -1: a row without strong couplings
-  Index count = 0;
-
-  Aggregates(const Level& level, const StrongPart& strong) {
-    const Index n = level.size();
-    of_row.assign(static_cast<std::size_t>(n), -1);
-    const auto any_strong = [&](Index row, const auto& test) {
-      for (Index k = strong.offsets[row]; k < strong.offsets[row + 1]; ++k)
-        if (test(strong.columns[k])) return true;
-      return false;
-    };
-    // Whole neighbourhoods that are still free.
-    for (Index i = 0; i < n; ++i) {
-      if (of_row[i] >= 0 || strong.isolated(i)) continue;
-      if (any_strong(i, [&](Index j) { return of_row[j] >= 0; })) continue;
-      of_row[i] = count;
-      for (Index k = strong.offsets[i]; k < strong.offsets[i + 1]; ++k)
-        of_row[strong.columns[k]] = count;
-      ++count;
-    }
-    // What is left joins the neighbour that it is coupled to most, among these.
-    Array<Index> joined = of_row;
-    for (Index i = 0; i < n; ++i) {
-      if (of_row[i] >= 0) continue;
-      Real best = 0;
-      for (Index k = level.matrix.offsets[i]; k < level.matrix.offsets[i + 1]; ++k) {
-        const Index j = level.matrix.columns[k];
-        if (strong.is_strong[k] && of_row[j] >= 0 && -level.matrix.values[k] > best) {
-          best = -level.matrix.values[k];
-          joined[i] = of_row[j];
-        }
-      }
-    }
-    of_row = std::move(joined);
-    for (Index i = 0; i < n; ++i) {
-      if (of_row[i] >= 0 || strong.isolated(i)) continue;
-      of_row[i] = count;
-      for (Index k = strong.offsets[i]; k < strong.offsets[i + 1]; ++k)
-        if (of_row[strong.columns[k]] < 0) of_row[strong.columns[k]] = count;
-      ++count;
-    }
-  }
-};
-
-double square(Real value) { return static_cast<double>(value) * static_cast<double>(value); }
-
-/// Of D^-1 A, A the strong part.
-double largest_eigenvalue(const Level& level, const StrongPart& strong) {
-  const Index n = level.size();
-  Array<Real> x(static_cast<std::size_t>(n)), y(static_cast<std::size_t>(n));
-  std::uint32_t state = 1;
-  for (Index i = 0; i < n; ++i) {
-    state = state * 1664525U + 1013904223U;
-    x[i] = static_cast<Real>(state >> 8) * 0x1p-24F - 0.5F;
-  }
-  double value = 2;
-  for (int step = 0; step < kPowerSteps; ++step) {
-    double before = 0, after = 0;
-    for (Index i = 0; i < n; ++i) {
-      Real sum = strong.diagonal[i] * x[i];
-      for (Index k = level.matrix.offsets[i]; k < level.matrix.offsets[i + 1]; ++k)
-        if (strong.is_strong[k]) sum += level.matrix.values[k] * x[level.matrix.columns[k]];
-      y[i] = sum / strong.diagonal[i];
-      before += square(x[i]);
-      after += square(y[i]);
-    }
-    if (!(before > 0) || !(after > 0)) break;
-    value = std::sqrt(after / before);
-    const Real scale = static_cast<Real>(1 / std::sqrt(after));
-    for (Index i = 0; i < n; ++i) x[i] = scale * y[i];
-  }
-  return kPowerMargin * value;
-}
-
-/// Sums entries of one row at a time; columns come in the order they are met.
-template <class Value>
-class RowSums {
- public:
-  RowSums(Index n_columns, Array<Index>& columns, Array<Value>& values)
-      : place_(static_cast<std::size_t>(n_columns), -1), columns_(columns), values_(values) {}
-  void begin_row() { begin_ = static_cast<Index>(columns_.size()); }
-  void add(Index column, Value value) {
-    Index& place = place_[column];
-    if (place < begin_) {
-      place = static_cast<Index>(columns_.size());
-      columns_.push_back(column);
-      values_.push_back(value);
-    } else {
-      values_[place] += value;
-    }
-  }
-  Index end() const { return static_cast<Index>(columns_.size()); }
-
- private:
-  Array<Index> place_;
-  Array<Index>& columns_;
-  Array<Value>& values_;
-  Index begin_ = 0;
-};
-
-Rows smoothed_prolongation(const Level& level, const StrongPart& strong,
-                           const Aggregates& aggregates) {
-  const Index n = level.size();
-  // 4/3 over the largest eigenvalue: the best damping for one step.   [VMB96]
-  const Real omega = static_cast<Real>(4.0 / 3.0 / largest_eigenvalue(level, strong));
-  Rows p;
-  p.offsets.resize(static_cast<std::size_t>(n) + 1);
-  p.offsets[0] = 0;
-  p.columns.reserve(3 * static_cast<std::size_t>(n));
-  p.values.reserve(3 * static_cast<std::size_t>(n));
-  RowSums<Real> sums(aggregates.count, p.columns, p.values);
-  for (Index i = 0; i < n; ++i) {
-    sums.begin_row();
-    if (!strong.isolated(i)) {
-      sums.add(aggregates.of_row[i], 1 - omega);
-      const Real factor = omega / strong.diagonal[i];
-      for (Index k = level.matrix.offsets[i]; k < level.matrix.offsets[i + 1]; ++k)
-        if (strong.is_strong[k])
-          sums.add(aggregates.of_row[level.matrix.columns[k]], -factor * level.matrix.values[k]);
-    }
-    p.offsets[i + 1] = sums.end();
-  }
-  return p;
-}
-
-Rows transposed(const Rows& rows, Index n_columns) {
-  Rows result;
-  result.offsets.assign(static_cast<std::size_t>(n_columns) + 1, 0);
-  for (const Index column : rows.columns) ++result.offsets[column + 1];
-  for (Index i = 0; i < n_columns; ++i) result.offsets[i + 1] += result.offsets[i];
-  result.columns.resize(rows.columns.size());
-  result.values.resize(rows.columns.size());
-  Array<Index> next(result.offsets.begin(), result.offsets.end() - 1);
-  for (Index i = 0; i + 1 < static_cast<Index>(rows.offsets.size()); ++i)
-    for (Index k = rows.offsets[i]; k < rows.offsets[i + 1]; ++k) {
-      const Index place = next[rows.columns[k]]++;
-      result.columns[place] = i;
-      result.values[place] = rows.values[k];
-    }
-  return result;
-}
-
-/// P^T A P. Sums are in double precision: row sums of a stiffness cancel.
-Level galerkin(const Level& fine, Index n_coarse) {
-  const Index n = fine.size();
-  const Rows& p = fine.prolongation;
-  const Rows& r = fine.restriction;
-  Rows ap;
-  ap.offsets.resize(static_cast<std::size_t>(n) + 1);
-  ap.offsets[0] = 0;
-  ap.columns.reserve(2 * p.columns.size());
-  ap.values.reserve(2 * p.columns.size());
-  {
-    RowSums<Real> sums(n_coarse, ap.columns, ap.values);
-    const auto add_row = [&](Index row, Real factor) {
-      for (Index k = p.offsets[row]; k < p.offsets[row + 1]; ++k)
-        sums.add(p.columns[k], factor * p.values[k]);
-    };
-    for (Index i = 0; i < n; ++i) {
-      sums.begin_row();
-      add_row(i, fine.diagonal[i]);
-      for (Index k = fine.matrix.offsets[i]; k < fine.matrix.offsets[i + 1]; ++k)
-        add_row(fine.matrix.columns[k], fine.matrix.values[k]);
-      ap.offsets[i + 1] = sums.end();
-    }
-  }
-  Array<Index> offsets(static_cast<std::size_t>(n_coarse) + 1), columns;
-  Array<double> values;
-  offsets[0] = 0;
-  {
-    RowSums<double> sums(n_coarse, columns, values);
-    for (Index i = 0; i < n_coarse; ++i) {
-      sums.begin_row();
-      for (Index m = r.offsets[i]; m < r.offsets[i + 1]; ++m) {
-        const double factor = r.values[m];
-        for (Index k = ap.offsets[r.columns[m]]; k < ap.offsets[r.columns[m] + 1]; ++k)
-          sums.add(ap.columns[k], factor * static_cast<double>(ap.values[k]));
-      }
-      offsets[i + 1] = sums.end();
-    }
-  }
-  // Written transposed, its rows ascend; above and below the diagonal the values agree but for
-  // rounding.
-  Level coarse;
-  Array<Index> next(static_cast<std::size_t>(n_coarse) + 1, 0);
-  for (Index i = 0; i < n_coarse; ++i)
-    for (Index k = offsets[i]; k < offsets[i + 1]; ++k)
-      if (columns[k] != i) ++next[columns[k] + 1];
-  for (Index i = 0; i < n_coarse; ++i) next[i + 1] += next[i];
-  coarse.matrix.offsets = next;
-  coarse.matrix.columns.resize(static_cast<std::size_t>(next[n_coarse]));
-  coarse.matrix.values.resize(static_cast<std::size_t>(next[n_coarse]));
-  coarse.diagonal.assign(static_cast<std::size_t>(n_coarse), 0);
-  for (Index i = 0; i < n_coarse; ++i)
-    for (Index k = offsets[i]; k < offsets[i + 1]; ++k) {
-      if (columns[k] == i) {
-        coarse.diagonal[i] = static_cast<Real>(values[k]);
-        continue;
-      }
-      const Index place = next[columns[k]]++;
-      coarse.matrix.columns[place] = i;
-      coarse.matrix.values[place] = static_cast<Real>(values[k]);
-    }
-  return coarse;
-}
-
 }  // namespace
 
 struct Multigrid::Impl {
@@ -348,20 +83,20 @@ struct Multigrid::Impl {
   bool solves_coarsest = false;
   mutable Vector coarse_values;
 
-  Impl(const SparseMatrix& matrix, const std::vector<bool>& fixed) : reduction(matrix, fixed) {
+  Impl(const SparseMatrix& matrix, const std::vector<bool>& fixed, int threads)
+      : reduction(matrix, fixed) {
     if (reduction.size() == 0) return;
     levels.reserve(40);
-    levels.push_back(finest(matrix));
-    levels.back().complete();
-    while (levels.back().size() > kCoarsest && add_level()) {
+    levels.emplace_back(finest(matrix));
+    while (levels.back().size() > kCoarsest && add_level(threads)) {
     }
     factorise_coarsest();
   }
 
-  Level finest(const SparseMatrix& matrix) {
+  multigrid::LevelMatrices finest(const SparseMatrix& matrix) {
     const Vector diagonal = positive_diagonal(matrix, reduction);
     scale = diagonal.maxCoeff();
-    Level level;
+    multigrid::LevelMatrices level;
     const Index n = reduction.size();
     level.diagonal.resize(static_cast<std::size_t>(n));
     Rows& rows = level.matrix;
@@ -386,21 +121,15 @@ struct Multigrid::Impl {
     return level;
   }
 
-  bool add_level() {
-    Level& fine = levels.back();
-    const StrongPart strong(fine);
-    const Aggregates aggregates(fine, strong);
-    if (aggregates.count == 0 || aggregates.count > kLeastReduction * fine.size()) return false;
-    fine.prolongation = smoothed_prolongation(fine, strong, aggregates);
-    fine.restriction = transposed(fine.prolongation, aggregates.count);
-    Level coarse = galerkin(fine, aggregates.count);
-    for (const Real entry : coarse.diagonal)
+  bool add_level(int threads) {
+    std::optional<multigrid::LevelMatrices> coarse = multigrid::coarsen(levels.back(), threads);
+    if (!coarse) return false;
+    for (const Real entry : coarse->diagonal)
       if (!(entry > 0) || !std::isfinite(entry))
         throw SolverFailure(
             "multigrid: a coarse matrix is not positive definite, its diagonal is " +
             std::to_string(entry));
-    coarse.complete();
-    levels.push_back(std::move(coarse));
+    levels.emplace_back(*std::move(coarse));
     return true;
   }
 
@@ -459,8 +188,8 @@ struct Multigrid::Impl {
   }
 };
 
-Multigrid::Multigrid(const SparseMatrix& matrix, const std::vector<bool>& fixed)
-    : impl_(std::make_unique<Impl>(matrix, fixed)) {}
+Multigrid::Multigrid(const SparseMatrix& matrix, const std::vector<bool>& fixed, int threads)
+    : impl_(std::make_unique<Impl>(matrix, fixed, threads)) {}
 
 Multigrid::~Multigrid() = default;
 
