@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "carat/kernels/multiversion.h"
+
 namespace carat {
 namespace {
 
@@ -142,14 +144,6 @@ template <int N>
   return unsound;
 }
 
-// One version a register width, chosen when the program starts.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define CARAT_MULTIVERSION [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]]
-#else
-#define CARAT_MULTIVERSION
-#endif
-
 #define CARAT_BLOCK(N)                                                                   \
   CARAT_MULTIVERSION unsigned block_##N(const double* points, const Index* const* faces, \
                                         bool centroid, double* const* weights,           \
@@ -160,7 +154,6 @@ CARAT_BLOCK(4)
 CARAT_BLOCK(5)
 CARAT_BLOCK(6)
 #undef CARAT_BLOCK
-#undef CARAT_MULTIVERSION
 
 }  // namespace
 

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
+#include "carat/base/bucket_sort.h"
 #include "carat/base/error.h"
+#include "carat/base/parallel.h"
 
 namespace carat {
 namespace {
@@ -93,59 +96,57 @@ bool repeats_a_corner(const Csr& faces) {
   return false;
 }
 
-EdgeTopology build_edges(const Csr& faces, Index n_vertices) {
-  struct Side {
-    Index upper, corner;
-  };
-  const std::size_t n_corners = faces.indices.size();
-  // Bucket the sides by their lower vertex; within a bucket they come in corner order.
-  Array<Index> start(static_cast<std::size_t>(n_vertices) + 1, 0);
-  const auto for_each_side = [&](auto&& visit) {
-    for (Index f = 0; f < faces.n_rows(); ++f) {
-      const Index begin = faces.begin(f), end = faces.end(f);
-      Index v = faces.indices[begin];
-      for (Index c = begin; c < end; ++c) {
-        const Index next = faces.indices[c + 1 == end ? begin : c + 1];
-        visit(c, std::min(v, next), std::max(v, next));
-        v = next;
+EdgeTopology build_edges(const Csr& faces, Index n_vertices, int threads) {
+  // Sides in buckets by their lower vertex, there by the upper one and the corner.
+  const Buckets sides = sort_into_buckets(
+      n_vertices, faces.n_rows(), threads, [&](Index first, Index last, auto&& emit) {
+        for (Index f = first; f < last; ++f) {
+          const Index begin = faces.begin(f), end = faces.end(f);
+          Index v = faces.indices[begin];
+          for (Index c = begin; c < end; ++c) {
+            const Index next = faces.indices[c + 1 == end ? begin : c + 1];
+            emit(std::min(v, next), make_key(std::max(v, next), static_cast<std::uint32_t>(c)));
+            v = next;
+          }
+        }
+      });
+  std::vector<Index> n_before(static_cast<std::size_t>(resolve_threads(threads)) + 1, 0);
+  parallel_blocks(n_vertices, threads, [&](int block, Index begin, Index end) {
+    Index n = 0;
+    for (Index v = begin; v < end; ++v) {
+      Index previous = -1;
+      for (Index k = sides.offsets[v]; k < sides.offsets[v + 1]; ++k) {
+        const Index upper = major_of(sides.keys[k]);
+        n += static_cast<Index>(upper != previous);
+        previous = upper;
       }
     }
-  };
-  for_each_side([&](Index, Index lower, Index) { ++start[lower + 1]; });
-  for (Index v = 0; v < n_vertices; ++v) start[v + 1] += start[v];
-  Array<Side> sides(n_corners);
-  {
-    Array<Index> next(start.begin(), start.end() - 1);
-    for_each_side([&](Index c, Index lower, Index upper) { sides[next[lower]++] = {upper, c}; });
-  }
+    n_before[static_cast<std::size_t>(block) + 1] = n;
+  });
+  std::partial_sum(n_before.begin(), n_before.end(), n_before.begin());
   EdgeTopology edges;
-  edges.of_corner.resize(n_corners);
-  edges.corners.indices.resize(n_corners);
-  edges.vertices.reserve(n_corners / 2 + 1);
-  edges.corners.offsets.reserve(n_corners / 2 + 2);
-  for (Index v = 0; v < n_vertices; ++v) {
-    Side* const first = sides.data() + start[v];
-    Side* const last = sides.data() + start[v + 1];
-    const auto by_upper = [](const Side& a, const Side& b) {
-      return a.upper != b.upper ? a.upper < b.upper : a.corner < b.corner;
-    };
-    if (last - first > 24) {
-      std::sort(first, last, by_upper);
-    } else {
-      for (Side* i = first; i < last; ++i)
-        for (Side* j = i; j > first && by_upper(*j, *(j - 1)); --j) std::swap(*j, *(j - 1));
-    }
-    for (const Side* side = first; side < last; ++side) {
-      if (side == first || side->upper != (side - 1)->upper) {
-        if (side != sides.data())
-          edges.corners.offsets.push_back(static_cast<Index>(side - sides.data()));
-        edges.vertices.push_back({v, side->upper});
+  edges.vertices.resize(static_cast<std::size_t>(n_before.back()));
+  edges.corners.offsets.resize(edges.vertices.size() + 1);
+  edges.corners.indices.resize(faces.indices.size());
+  edges.of_corner.resize(faces.indices.size());
+  edges.corners.offsets[0] = 0;
+  parallel_blocks(n_vertices, threads, [&](int block, Index begin, Index end) {
+    Index e = n_before[static_cast<std::size_t>(block)] - 1;
+    for (Index v = begin; v < end; ++v) {
+      Index previous = -1;
+      for (Index k = sides.offsets[v]; k < sides.offsets[v + 1]; ++k) {
+        const Index upper = major_of(sides.keys[k]);
+        const auto corner = static_cast<Index>(minor_of(sides.keys[k]));
+        // Written again for every side of an edge: cheaper than a branch.
+        e += static_cast<Index>(upper != previous);
+        edges.vertices[e] = {v, upper};
+        edges.corners.offsets[e + 1] = k + 1;
+        edges.corners.indices[k] = corner;
+        edges.of_corner[corner] = e;
+        previous = upper;
       }
-      edges.of_corner[side->corner] = static_cast<Index>(edges.vertices.size()) - 1;
-      edges.corners.indices[side - sides.data()] = side->corner;
     }
-  }
-  if (n_corners > 0) edges.corners.offsets.push_back(static_cast<Index>(n_corners));
+  });
   return edges;
 }
 
@@ -225,9 +226,10 @@ const Csr& PolygonMesh::vertex_corners() const {
   return topology_->vertex_corners;
 }
 
-const EdgeTopology& PolygonMesh::edges() const {
-  std::call_once(topology_->edges_once,
-                 [this] { topology_->edges = build_edges(faces(), n_vertices()); });
+const EdgeTopology& PolygonMesh::edges(int threads) const {
+  std::call_once(topology_->edges_once, [this, threads] {
+    topology_->edges = build_edges(faces(), n_vertices(), threads);
+  });
   return topology_->edges;
 }
 

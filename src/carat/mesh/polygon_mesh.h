@@ -75,7 +75,8 @@ class PolygonMesh {
   /// Vertex -> its corners, ascending. Built on first use, O(corners).
   const Csr& vertex_corners() const;
   /// Edges and their sides. Built on first use, O(corners) by counting.
-  const EdgeTopology& edges() const;
+  /// \param threads  0: all the machine has. The result does not depend on it.
+  const EdgeTopology& edges(int threads = 1) const;
 
   /// The corner that follows `corner` around its face `f`.
   Index next_corner(Index f, Index corner) const {

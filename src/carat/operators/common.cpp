@@ -86,6 +86,10 @@ void report_unreferenced(const PolygonMesh& mesh, Diagnostics& diagnostics) {
   std::vector<Index> unreferenced;
   for (Index v = 0; v < mesh.n_vertices(); ++v)
     if (mesh.vertex_corners().size(v) == 0) unreferenced.push_back(v);
+  report_unreferenced(std::move(unreferenced), diagnostics);
+}
+
+void report_unreferenced(std::vector<Index> unreferenced, Diagnostics& diagnostics) {
   diagnostics.add("unreferenced_vertices",
                   "vertices without a face: empty rows, excluded from every solve",
                   std::move(unreferenced));

@@ -33,6 +33,7 @@ void report_degenerate(std::vector<Index> samples, const DiscretizationOptions& 
 
 /// Lists the vertices without a face, or in volumes a cell: their rows and columns are empty.
 void report_unreferenced(const PolygonMesh& mesh, Diagnostics& diagnostics);
+void report_unreferenced(std::vector<Index> without_faces, Diagnostics& diagnostics);
 void report_unreferenced(const PolyhedralMesh& mesh, Diagnostics& diagnostics);
 
 /// Positions relative to the middle of their bounding box.

@@ -125,6 +125,11 @@ void report_virtual_vertices(const VirtualVertices& virtuals, Diagnostics& diagn
         break;
     }
   }
+  report_virtual_vertices(std::move(moved), std::move(flipped), std::move(degenerate), diagnostics);
+}
+
+void report_virtual_vertices(std::vector<Index> moved, std::vector<Index> flipped,
+                             std::vector<Index> degenerate, Diagnostics& diagnostics) {
   diagnostics.add("moved_virtual_vertices",
                   "faces whose virtual vertex flipped a triangle and was moved to the centroid of "
                   "the face's kernel",

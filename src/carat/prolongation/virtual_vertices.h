@@ -33,5 +33,7 @@ SparseMatrix prolongation_matrix(const PolygonMesh& mesh, const Array<double>& w
 
 /// Lists the faces whose virtual vertex was moved, flips a triangle, or has no area to lie in.
 void report_virtual_vertices(const VirtualVertices& virtuals, Diagnostics& diagnostics);
+void report_virtual_vertices(std::vector<Index> moved, std::vector<Index> flipped,
+                             std::vector<Index> degenerate, Diagnostics& diagnostics);
 
 }  // namespace carat

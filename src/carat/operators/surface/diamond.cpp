@@ -14,6 +14,7 @@
 #include "carat/kernels/diamond_2d.h"
 #include "carat/kernels/diamond_split.h"
 #include "carat/operators/common.h"
+#include "carat/operators/diamond/triangle_diamond.h"
 #include "carat/operators/registry.h"
 #include "carat/operators/surface/incidence.h"
 #include "carat/prolongation/virtual_vertices.h"
@@ -425,6 +426,9 @@ std::unique_ptr<Assembly> make_diamond(const char* name, const PolygonMesh& mesh
                                        const DiscretizationOptions& options) {
   if (options.theta.value_or(1.0) < 1 || options.mass == MassKind::MomentExact)
     return std::make_unique<DiamondAssembly<GeneralDiamondTerm>>(name, mesh, options);
+  if (options.parts == DiscretizationParts::Matrices)
+    if (std::unique_ptr<Assembly> triangles = make_triangle_diamond(name, mesh, options))
+      return triangles;
   return std::make_unique<DiamondAssembly<DiamondTerm>>(name, mesh, options);
 }
 

@@ -1,0 +1,190 @@
+#include "carat/operators/diamond/triangle_diamond.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+#include "carat/assembly/triangle_diamond_assembly.h"
+#include "carat/base/parallel.h"
+#include "carat/kernels/triangle_diamond_block.h"
+#include "carat/operators/common.h"
+#include "carat/prolongation/virtual_vertices.h"
+
+namespace carat {
+namespace {
+
+class TriangleDiamondAssembly final : public Assembly {
+ public:
+  TriangleDiamondAssembly(const char* name, const PolygonMesh& mesh,
+                          const DiscretizationOptions& options)
+      : mesh_(mesh), options_(options), incidence_(incidence(mesh_, options.threads)) {
+    result_.name = name;
+    TriangleDiamondPatterns made = triangle_diamond_patterns(incidence_, options_.threads);
+    result_.stiffness = std::move(made.patterns.stiffness);
+    result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : std::move(made.patterns.mass);
+    sources_ = std::move(made.sources);
+    result_.sample_measure.resize(mesh_.n_edges());
+    for (Index v = 0; v < mesh_.n_vertices(); ++v)
+      if (sources_.stiffness_diagonal[v] < 0) unreferenced_.push_back(v);
+  }
+  static TriangleIncidence incidence(const PolygonMesh& mesh, int threads) {
+    const EdgeTopology& edges = mesh.edges(threads);
+    return {mesh.n_vertices(), mesh.faces(), edges.vertices, edges.corners, edges.of_corner};
+  }
+  void update(const Points& points) override;
+
+ private:
+  using Block = TriangleDiamondBlock;
+  struct Diamond {
+    Index v1, v2, left, right;  // vertices, right is -1 at the boundary
+    Index left_corner, right_corner;
+  };
+  Diamond diamond(Index e) const;
+  void compute_terms(const Points& points);
+  void compute_block(const Points& points, Index first, Index size, Block& block);
+  Array<double> coefficients(const Points& points) const;
+  void report(const Points& points);
+
+  PolygonMesh mesh_;
+  DiscretizationOptions options_;
+  bool lumped_ = options_.mass == MassKind::Lumped;
+  TriangleIncidence incidence_;
+  TriangleDiamondSources sources_;
+  TriangleDiamondTerms terms_;
+  Array<double> coefficient_;  // of every diamond; empty: 1
+  std::vector<Index> unreferenced_;
+  bool any_excluded_ = false, any_thin_ = false;  // diamonds; triangles, perhaps
+};
+
+TriangleDiamondAssembly::Diamond TriangleDiamondAssembly::diamond(Index e) const {
+  // The side of the first corner runs along the hinge, so its face is to the left.
+  const Index* const corners = incidence_.edge_corners.indices.data();
+  const Index* const vertices = incidence_.faces.indices.data();
+  const Index k = incidence_.edge_corners.begin(e);
+  const Index l = corners[k], place = l % 3, face = l - place;
+  Diamond result{
+      vertices[l], vertices[face + (place + 1) % 3], vertices[face + (place + 2) % 3], -1, l, -1};
+  if (incidence_.edge_corners.end(e) - k == 2) {
+    const Index r = corners[k + 1];
+    result.right_corner = r;
+    result.right = vertices[r - r % 3 + (r + 2) % 3];
+  }
+  return result;
+}
+
+void TriangleDiamondAssembly::compute_block(const Points& points, Index first, Index size,
+                                            Block& block) {
+  const double* const x = points.data();
+  for (int k = 0; k < kBlockDiamonds; ++k) {
+    const Diamond d = diamond(first + std::min<Index>(k, size - 1));
+    block.inner[k] = d.right >= 0 ? 1.0 : 0.0;
+    const std::array<Index, 4> at{d.v1, d.v2, d.left, d.right >= 0 ? d.right : d.v1};
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        block.x[i][c][k] = x[3 * static_cast<std::ptrdiff_t>(at[i]) + static_cast<int>(c)];
+  }
+  triangle_diamond_block(block, options_.eps_rel);
+}
+
+void TriangleDiamondAssembly::compute_terms(const Points& points) {
+  const Index n_edges = mesh_.n_edges();
+  terms_.resize(n_edges, sources_);
+  if (options_.coefficient) coefficient_ = coefficients(points);
+  std::atomic<bool> any_excluded{false}, any_thin{false};
+  parallel_blocks(n_edges, options_.threads, [&](int, Index begin, Index end) {
+    Block block;
+    bool excluded = false, thin = false;
+    for (Index first = begin; first < end; first += kBlockDiamonds) {
+      const Index size = std::min<Index>(kBlockDiamonds, end - first);
+      compute_block(points, first, size, block);
+      for (Index k = 0; k < size; ++k) {
+        const Index e = first + k;
+        const double scale = coefficient_.empty() ? 1.0 : coefficient_[e];
+        // The literal quarter of (23) would lose a quarter of every boundary diamond, which has
+        // three vertices.   [BBA21 (23)]
+        const double share = block.inner[k] > 0 ? 1.0 / 36 : 1.0 / 27;
+        terms_.around[e] = {scale * block.beta[k] / 3, share * block.area[k]};
+        terms_.values[e] = -scale * block.alpha[k];
+        terms_.values[n_edges + e] = -scale * block.gamma[k] / 9;
+        result_.sample_measure[e] = block.area[k];
+        excluded |= !(block.area[k] > 0);
+        thin |= block.thin[k] > 0;
+      }
+    }
+    if (excluded) any_excluded = true;
+    if (thin) any_thin = true;
+  });
+  any_excluded_ = any_excluded;
+  any_thin_ = any_thin;
+}
+
+/// The coefficient at the centroids of the diamonds. One thread: the caller's function is not asked
+/// to be thread-safe.
+Array<double> TriangleDiamondAssembly::coefficients(const Points& points) const {
+  Array<double> result(static_cast<std::size_t>(mesh_.n_edges()));
+  for (Index e = 0; e < mesh_.n_edges(); ++e) {
+    const Diamond d = diamond(e);
+    const Vec3 x1 = points.row(d.v1).transpose();
+    const Vec3 hinge = Vec3(points.row(d.v2).transpose()) - x1;
+    Vec3 moment = Vec3::Zero();
+    double weight = 0;
+    for (const Index opposite : {d.left, d.right}) {
+      if (opposite < 0) continue;
+      const Vec3 side = Vec3(points.row(opposite).transpose()) - x1;
+      const double area = hinge.cross(side).norm();
+      moment += area * (hinge + (hinge + side) / 3) / 3;
+      weight += area;
+    }
+    result[e] = weight > 0 ? coefficient_at(options_, x1 + moment / weight) : 1.0;
+  }
+  return result;
+}
+
+void TriangleDiamondAssembly::report(const Points& points) {
+  result_.diagnostics = {};
+  report_unreferenced(unreferenced_, result_.diagnostics);
+  std::vector<Index> degenerate, excluded;
+  if (any_thin_) {
+    VirtualVertexKernel kernel(options_.virtual_vertex);
+    std::array<double, 3> weights;
+    std::array<VirtualTriangle, 3> triangles;
+    for (Index f = 0; f < mesh_.n_faces(); ++f)
+      if (kernel.compute(points, mesh_.face(f), weights.data(), triangles.data()) ==
+          VirtualVertexStatus::Degenerate)
+        degenerate.push_back(f);
+  }
+  report_virtual_vertices({}, {}, std::move(degenerate), result_.diagnostics);
+  if (any_excluded_)
+    for (Index e = 0; e < mesh_.n_edges(); ++e)
+      if (!(result_.sample_measure[e] > 0)) excluded.push_back(e);
+  report_degenerate(
+      std::move(excluded), options_, "diamond",
+      [&](Index e) {
+        return "edge " + std::to_string(e) + " between vertices " +
+               std::to_string(incidence_.edge_vertices[e][0]) + " and " +
+               std::to_string(incidence_.edge_vertices[e][1]);
+      },
+      result_.diagnostics);
+}
+
+void TriangleDiamondAssembly::update(const Points& points) {
+  compute_terms(points);
+  assemble_triangle_diamonds(result_.stiffness, result_.mass, lumped_, incidence_, sources_,
+                             options_.threads, terms_);
+  report(points);
+}
+
+}  // namespace
+
+std::unique_ptr<Assembly> make_triangle_diamond(const char* name, const PolygonMesh& mesh,
+                                                const DiscretizationOptions& options) {
+  // No face has fewer than three corners.
+  if (mesh.n_corners() != 3 * std::int64_t{mesh.n_faces()} ||
+      !has_triangle_diamonds(TriangleDiamondAssembly::incidence(mesh, options.threads),
+                             options.threads))
+    return nullptr;
+  return std::make_unique<TriangleDiamondAssembly>(name, mesh, options);
+}
+
+}  // namespace carat
