@@ -11,15 +11,6 @@
 namespace carat {
 namespace {
 
-/// Corners of a triangle before and after `corner`.
-struct Neighbours {
-  Index next, previous;
-};
-inline Neighbours neighbours(Index corner) {
-  const Index place = corner % 3;
-  return {place == 2 ? corner - 2 : corner + 1, place == 0 ? corner + 2 : corner - 1};
-}
-
 /// Pairs of vertices that couple, in buckets by the lower one, there by the upper one and then by
 /// the number of the value: that of the edge, or n_edges + edge for the opposite vertices.
 Buckets coupled_pairs(const TriangleIncidence& mesh, int threads) {
@@ -32,8 +23,8 @@ Buckets coupled_pairs(const TriangleIncidence& mesh, int threads) {
           emit(mesh.edge_vertices[e][0], make_key(mesh.edge_vertices[e][1], value));
           const Index first = mesh.edge_corners.begin(e);
           if (mesh.edge_corners.size(e) < 2) continue;
-          const Index l = vertices[neighbours(mesh.edge_corners.indices[first]).previous];
-          const Index r = vertices[neighbours(mesh.edge_corners.indices[first + 1]).previous];
+          const Index l = vertices[triangle_neighbours(mesh.edge_corners.indices[first]).previous];
+          const Index r = vertices[triangle_neighbours(mesh.edge_corners.indices[first + 1]).previous];
           if (l == r) continue;  // u_l - u_r vanishes
           emit(std::min(l, r),
                make_key(std::max(l, r), value + static_cast<std::uint32_t>(n_edges)));
@@ -215,7 +206,7 @@ void add_sides(const TriangleIncidence& mesh, Index begin, Index end, TriangleDi
   for (Index e = begin; e < end; ++e) {
     double value = terms.values[e], mass = 0;
     for (Index k = mesh.edge_corners.begin(e); k < mesh.edge_corners.end(e); ++k) {
-      const Neighbours corners = neighbours(mesh.edge_corners.indices[k]);
+      const TriangleCorners corners = triangle_neighbours(mesh.edge_corners.indices[k]);
       const auto& next = around[of_corner[corners.next]];
       const auto& previous = around[of_corner[corners.previous]];
       value += next.beta - previous.beta;
@@ -232,7 +223,7 @@ void add_boundary(const TriangleIncidence& mesh, const TriangleDiamondSources& s
   const Index n_edges = mesh.edge_corners.n_rows();
   for (const Index e : sources.boundary_edges) {
     const double coupling = values[n_edges + e];
-    const Neighbours corners = neighbours(mesh.edge_corners.row(e)[0]);
+    const TriangleCorners corners = triangle_neighbours(mesh.edge_corners.row(e)[0]);
     values[e] -= coupling / 4;
     values[mesh.corner_edges[corners.next]] += coupling / 2;
     values[mesh.corner_edges[corners.previous]] += coupling / 2;

@@ -25,6 +25,15 @@ struct TriangleIncidence {
   const Array<Index>& corner_edges;                  ///< corner -> edge
 };
 
+/// The other corners of a triangle.
+struct TriangleCorners {
+  Index next, previous;
+};
+inline TriangleCorners triangle_neighbours(Index corner) {
+  const Index place = corner % 3;
+  return {place == 2 ? corner - 2 : corner + 1, place == 0 ? corner + 2 : corner - 1};
+}
+
 /// What the closed form asks of triangles: at most two an edge, which are oriented alike, and fewer
 /// than 2^30 edges.
 bool has_triangle_diamonds(const TriangleIncidence& mesh, int threads);

@@ -38,7 +38,6 @@ class TriangleDiamondAssembly final : public Assembly {
   using Block = TriangleDiamondBlock;
   struct Diamond {
     Index v1, v2, left, right;  // vertices, right is -1 at the boundary
-    Index left_corner, right_corner;
   };
   Diamond diamond(Index e) const;
   void compute_terms(const Points& points);
@@ -57,32 +56,30 @@ class TriangleDiamondAssembly final : public Assembly {
   bool any_excluded_ = false, any_thin_ = false;  // diamonds; triangles, perhaps
 };
 
-TriangleDiamondAssembly::Diamond TriangleDiamondAssembly::diamond(Index e) const {
+inline TriangleDiamondAssembly::Diamond TriangleDiamondAssembly::diamond(Index e) const {
   // The side of the first corner runs along the hinge, so its face is to the left.
   const Index* const corners = incidence_.edge_corners.indices.data();
   const Index* const vertices = incidence_.faces.indices.data();
   const Index k = incidence_.edge_corners.begin(e);
-  const Index l = corners[k], place = l % 3, face = l - place;
-  Diamond result{
-      vertices[l], vertices[face + (place + 1) % 3], vertices[face + (place + 2) % 3], -1, l, -1};
-  if (incidence_.edge_corners.end(e) - k == 2) {
-    const Index r = corners[k + 1];
-    result.right_corner = r;
-    result.right = vertices[r - r % 3 + (r + 2) % 3];
-  }
+  const Index l = corners[k];
+  const auto [next, previous] = triangle_neighbours(l);
+  Diamond result{vertices[l], vertices[next], vertices[previous], -1};
+  if (incidence_.edge_corners.end(e) - k == 2)
+    result.right = vertices[triangle_neighbours(corners[k + 1]).previous];
   return result;
 }
 
 void TriangleDiamondAssembly::compute_block(const Points& points, Index first, Index size,
                                             Block& block) {
   const double* const x = points.data();
-  for (int k = 0; k < kBlockDiamonds; ++k) {
-    const Diamond d = diamond(first + std::min<Index>(k, size - 1));
+  for (Index k = 0; k < size; ++k) {
+    const Diamond d = diamond(first + k);
     block.inner[k] = d.right >= 0 ? 1.0 : 0.0;
-    const std::array<Index, 4> at{d.v1, d.v2, d.left, d.right >= 0 ? d.right : d.v1};
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t c = 0; c < 3; ++c)
-        block.x[i][c][k] = x[3 * static_cast<std::ptrdiff_t>(at[i]) + static_cast<int>(c)];
+    const double* const at[4] = {x + 3 * std::ptrdiff_t{d.v1}, x + 3 * std::ptrdiff_t{d.v2},
+                                 x + 3 * std::ptrdiff_t{d.left},
+                                 x + 3 * std::ptrdiff_t{d.right >= 0 ? d.right : d.v1}};
+    for (int i = 0; i < 4; ++i)
+      for (int c = 0; c < 3; ++c) block.x[i][c][k] = at[i][c];
   }
   triangle_diamond_block(block, options_.eps_rel);
 }
@@ -93,7 +90,7 @@ void TriangleDiamondAssembly::compute_terms(const Points& points) {
   if (options_.coefficient) coefficient_ = coefficients(points);
   std::atomic<bool> any_excluded{false}, any_thin{false};
   parallel_blocks(n_edges, options_.threads, [&](int, Index begin, Index end) {
-    Block block;
+    Block block{};  // lanes without a diamond hold numbers as well
     bool excluded = false, thin = false;
     for (Index first = begin; first < end; first += kBlockDiamonds) {
       const Index size = std::min<Index>(kBlockDiamonds, end - first);
