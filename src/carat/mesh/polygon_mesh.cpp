@@ -212,16 +212,22 @@ const Array<Index>& PolygonMesh::corner_faces() const {
   return topology_->corner_faces;
 }
 
-const Csr& PolygonMesh::vertex_corners() const {
-  std::call_once(topology_->vertex_corners_once, [this] {
-    Csr result;
-    result.offsets.assign(static_cast<std::size_t>(n_vertices()) + 1, 0);
-    for (const Index v : faces().indices) ++result.offsets[v + 1];
-    for (Index v = 0; v < n_vertices(); ++v) result.offsets[v + 1] += result.offsets[v];
-    Array<Index> next(result.offsets.begin(), result.offsets.end() - 1);
-    result.indices.resize(static_cast<std::size_t>(n_corners()));
-    for (Index c = 0; c < n_corners(); ++c) result.indices[next[faces().indices[c]]++] = c;
-    topology_->vertex_corners = std::move(result);
+const Csr& PolygonMesh::vertex_corners(int threads) const {
+  std::call_once(topology_->vertex_corners_once, [this, threads] {
+    const Array<Index>& vertices = faces().indices;
+    Csr& result = topology_->vertex_corners;
+    BlockPlaces next(static_cast<std::size_t>(resolve_threads(threads)));
+    parallel_blocks(n_corners(), threads, [&](int block, Index begin, Index end) {
+      Array<Index>& counts = next[static_cast<std::size_t>(block)];
+      counts.assign(static_cast<std::size_t>(n_vertices()) + 1, 0);  // never empty
+      for (Index c = begin; c < end; ++c) ++counts[vertices[c]];
+    });
+    counts_to_places(n_vertices(), next, result.offsets);
+    result.indices.resize(vertices.size());
+    parallel_blocks(n_corners(), threads, [&](int block, Index begin, Index end) {
+      Index* const place = next[static_cast<std::size_t>(block)].data();
+      for (Index c = begin; c < end; ++c) result.indices[place[vertices[c]]++] = c;
+    });
   });
   return topology_->vertex_corners;
 }

@@ -73,9 +73,9 @@ class PolygonMesh {
   /// Corner -> its face. Built on first use, O(corners).
   const Array<Index>& corner_faces() const;
   /// Vertex -> its corners, ascending. Built on first use, O(corners).
-  const Csr& vertex_corners() const;
-  /// Edges and their sides. Built on first use, O(corners) by counting.
   /// \param threads  0: all the machine has. The result does not depend on it.
+  const Csr& vertex_corners(int threads = 1) const;
+  /// Edges and their sides. Built on first use, O(corners) by counting. Threads likewise.
   const EdgeTopology& edges(int threads = 1) const;
 
   /// The corner that follows `corner` around its face `f`.

@@ -95,7 +95,7 @@ class DiamondAssembly final : public Assembly {
 template <class Term>
 DiamondAssembly<Term>::DiamondAssembly(const char* name, const PolygonMesh& mesh,
                                        const DiscretizationOptions& options)
-    : mesh_(mesh), options_(options), incidence_(surface_incidence(mesh_)) {
+    : mesh_(mesh), options_(options), incidence_(surface_incidence(mesh_, options.threads)) {
   result_.name = name;
   rings_ = face_rings(incidence_, options_.threads);
   DiamondPatterns patterns = diamond_patterns(incidence_, rings_, options_.threads);

@@ -6,9 +6,11 @@
 
 namespace carat {
 
-inline SurfaceIncidence surface_incidence(const PolygonMesh& mesh) {
-  return {mesh.faces(), mesh.corner_faces(), mesh.edges().of_corner, mesh.edges().corners,
-          mesh.vertex_corners()};
+/// \param threads  for what the mesh has not derived yet; 0: all the machine has
+inline SurfaceIncidence surface_incidence(const PolygonMesh& mesh, int threads = 1) {
+  const EdgeTopology& edges = mesh.edges(threads);
+  return {mesh.faces(), mesh.corner_faces(), edges.of_corner, edges.corners,
+          mesh.vertex_corners(threads)};
 }
 
 }  // namespace carat
