@@ -20,8 +20,10 @@ enum class DegeneratePolicy {
   Strict,  ///< throw DegenerateElement
 };
 
-/// What to compute beyond stiffness and mass.
+/// What to compute.
 enum class DiscretizationParts {
+  /// The stiffness, as for a preconditioner. Operators that save nothing by it give Matrices.
+  Stiffness,
   Matrices,  ///< stiffness and mass
   Gradient,  ///< also the gradient and its sample measures; the divergence follows from them
   Frames,    ///< also what turns gradients into 3-D vectors

@@ -75,6 +75,8 @@ DiscretizationOptions settle_options(const std::string& name, const OperatorOpti
   if (!taken.tensor_coefficient && options.cell_coefficient.cols() == 6)
     throw InvalidOption("the operator " + name +
                         " takes scalars a cell as coefficient, not tensors");
+  if (!taken.stiffness_alone && options.parts == DiscretizationParts::Stiffness)
+    options.parts = DiscretizationParts::Matrices;
   return options;
 }
 
@@ -160,7 +162,7 @@ SparseMatrix assemble_sparser(const Mesh& mesh, const DiscretizationOptions& opt
   own.coefficient = options.coefficient;
   own.cell_coefficient = options.cell_coefficient;
   own.threads = options.threads;
-  own.parts = DiscretizationParts::Matrices;
+  own.parts = DiscretizationParts::Stiffness;
   return discretize(mesh, "bunge", own).stiffness;
 }
 

@@ -43,6 +43,7 @@ struct OperatorOptionSet {
   std::optional<double> theta{};            ///< its default
   std::optional<double> tau{};              ///< of the moment-exact mass, its default
   bool tensor_coefficient = true;           ///< symmetric tensors in cell_coefficient
+  bool stiffness_alone = false;             ///< DiscretizationParts::Stiffness saves something
 };
 
 /// What a user wants to know before choosing; docs/operators.md is made of it.

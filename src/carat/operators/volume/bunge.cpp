@@ -3,18 +3,23 @@
 // prolonged from the cells' own: S = P^T S_tet P, M = P^T M_tet P.
 
 #include <algorithm>
+#include <atomic>
 
 #include "carat/assembly/cell_assembly.h"
 #include "carat/assembly/pattern.h"
 #include "carat/base/error.h"
 #include "carat/kernels/tetrahedron.h"
 #include "carat/operators/common.h"
+#include "carat/operators/linear_tets.h"
 #include "carat/operators/registry.h"
 #include "carat/operators/volume/incidence.h"
 #include "carat/prolongation/virtual_cells.h"
 
 namespace carat {
 namespace {
+
+// Volumes below this part of the cubed size are rounding noise of the products that make them.
+constexpr double kNoise = 1e-13;
 
 class VolumeBungeAssembly final : public Assembly {
  public:
@@ -35,6 +40,7 @@ class VolumeBungeAssembly final : public Assembly {
   Index collect_columns(Index c, Index* columns) const;
 
   // Numeric.
+  bool compute_tets();
   void fill_forms();
   void fill_cell(Index c, Array<Index>& place, Array<Index>& face_places);
   VirtualTetMatrix stiffness_of(const Tetrahedron& tet, const Place& at) const;
@@ -53,10 +59,15 @@ class VolumeBungeAssembly final : public Assembly {
   PolyhedralMesh mesh_;
   DiscretizationOptions options_;
   bool lumped_ = options_.mass == MassKind::Lumped;
+  bool with_mass_ = options_.parts != DiscretizationParts::Stiffness;
   VolumeIncidence incidence_;
   Array<Index> first_tet_;  // cell -> its first virtual tetrahedron, n_cells + 1 numbers
   VirtualCells virtuals_;
   CellForm stiffness_, mass_;
+  bool loose_faces_;  // some face has no cell
+  bool tets_;         // all cells are tetrahedra, K constant in each: the closed form serves
+  Array<LinearTet> linear_tets_;
+  bool closed_form_ = false;  // the last update took it
   Vec3 origin_ = Vec3::Zero();
   Points points_;  // relative to the origin, so that no accuracy is lost far from it
 };
@@ -67,10 +78,14 @@ VolumeBungeAssembly::VolumeBungeAssembly(const PolyhedralMesh& mesh,
   check_cell_coefficient(options_, mesh_.n_cells());
   result_.name = "bunge";
   number_tets();
+  loose_faces_ =
+      std::any_of(incidence_.face_cells.begin(), incidence_.face_cells.end(),
+                  [](const FaceCells& cells) { return cells.below < 0 && cells.above < 0; });
+  tets_ = all_tetrahedra(incidence_) && !options_.coefficient;
   result_.stiffness = cell_pattern(incidence_, options_.threads);
-  result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : result_.stiffness;
-  result_.sample_measure.resize(n_tets());
-  if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
+  if (with_mass_) result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : result_.stiffness;
+  if (with_mass_ || !tets_) result_.sample_measure.resize(n_tets());
+  if (options_.parts >= DiscretizationParts::Gradient) make_gradient_pattern();
 }
 
 void VolumeBungeAssembly::number_tets() {
@@ -151,6 +166,30 @@ VirtualTetMatrix mass_of(double volume) {
   return {own, own, own, own, common, common, common, common, common, common};
 }
 
+/// Linear functions on a tetrahedron are linear on its virtual tetrahedra, twelfths of it.
+/// \return false if some are so thin that one virtual tetrahedron may count where another does not
+bool VolumeBungeAssembly::compute_tets() {
+  std::atomic<bool> clear = true;
+  const double safe = 24 * std::max(options_.eps_rel, kNoise);
+  const Eigen::Index components = options_.cell_coefficient.cols();
+  compute_linear_tets(
+      points_, incidence_, options_.threads, linear_tets_, [&](Index c, LinearTet& tet) {
+        if (!is_thicker(tet, safe)) {
+          LinearTet turned = tet;
+          turned.volume = -tet.volume;
+          if (!is_thicker(turned, kNoise)) clear = false;
+          tet = {};
+        } else if (components == 6) {
+          tet = linear_tet(cell_tetrahedron(points_, incidence_, c, 0), cell_tensor(options_, c));
+        } else if (components == 1) {
+          for (double& pair : tet.pair) pair *= options_.cell_coefficient(c, 0);
+        }
+        if (with_mass_)
+          result_.sample_measure.segment<12>(first_tet_[c]).setConstant(tet.volume / 12);
+      });
+  return clear;
+}
+
 void VolumeBungeAssembly::fill_cell(Index c, Array<Index>& place, Array<Index>& face_places) {
   const Array<double>& weights = virtuals_.faces.weights;
   CellFormFiller stiffness(stiffness_, incidence_, weights, c);
@@ -177,6 +216,7 @@ void VolumeBungeAssembly::fill_cell(Index c, Array<Index>& place, Array<Index>& 
 void VolumeBungeAssembly::fill_forms() {
   stiffness_.reset(incidence_);
   mass_.reset(incidence_);
+  result_.sample_measure.resize(n_tets());
   // The caller's function is not asked to be thread-safe.
   const int threads = options_.coefficient ? 1 : options_.threads;
   parallel_blocks(mesh_.n_cells(), threads, [&](int, Index begin, Index end) {
@@ -270,8 +310,14 @@ void VolumeBungeAssembly::report() {
   report_unreferenced(mesh_, result_.diagnostics);
   report_virtual_cells(virtuals_, result_.diagnostics);
   std::vector<Index> excluded;
-  for (Index tet = 0; tet < n_tets(); ++tet)
-    if (!(result_.sample_measure[tet] > 0)) excluded.push_back(tet);
+  if (closed_form_) {
+    for (Index c = 0; c < mesh_.n_cells(); ++c)
+      if (!(linear_tets_[c].volume > 0))
+        for (Index tet = first_tet_[c]; tet < first_tet_[c + 1]; ++tet) excluded.push_back(tet);
+  } else {
+    for (Index tet = 0; tet < n_tets(); ++tet)
+      if (!(result_.sample_measure[tet] > 0)) excluded.push_back(tet);
+  }
   report_degenerate(
       std::move(excluded), options_, "virtual tet",
       [&](Index tet) {
@@ -290,16 +336,30 @@ void VolumeBungeAssembly::report() {
 
 void VolumeBungeAssembly::update(const Points& points) {
   centre_points(points, points_, origin_);
-  update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
-  fill_forms();
-  const auto assemble = [&](SparseMatrix& matrix, bool lumped, const CellForm& form) {
-    assemble_cell_form(matrix, lumped, incidence_, mesh_.face_mesh().vertex_corners(),
-                       mesh_.face_mesh().corner_faces(), virtuals_.faces.weights,
-                       virtuals_.cell_weights, form, options_.threads);
-  };
-  assemble(result_.stiffness, false, stiffness_);
-  assemble(result_.mass, lumped_, mass_);
-  if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
+  closed_form_ = tets_ && compute_tets();
+  const bool with_gradient = options_.parts >= DiscretizationParts::Gradient;
+  if (!closed_form_ || with_gradient || loose_faces_) {
+    update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
+  } else {
+    // Tetrahedra with a volume: there is nothing to report of their points.
+    virtuals_.cell_status.clear();
+    virtuals_.faces.status.clear();
+  }
+  SparseMatrix* const mass = with_mass_ ? &result_.mass : nullptr;
+  if (closed_form_) {
+    assemble_linear_tets(result_.stiffness, mass, lumped_, incidence_, linear_tets_,
+                         options_.threads);
+  } else {
+    fill_forms();
+    const auto assemble = [&](SparseMatrix& matrix, bool lumped, const CellForm& form) {
+      assemble_cell_form(matrix, lumped, incidence_, mesh_.face_mesh().vertex_corners(),
+                         mesh_.face_mesh().corner_faces(), virtuals_.faces.weights,
+                         virtuals_.cell_weights, form, options_.threads);
+    };
+    assemble(result_.stiffness, false, stiffness_);
+    if (mass != nullptr) assemble(*mass, lumped_, mass_);
+  }
+  if (with_gradient) assemble_gradient();
   if (options_.parts == DiscretizationParts::Frames) collect_frames();
   report();
 }
@@ -311,7 +371,7 @@ extern const VolumeOperator bunge_volume_operator = {
     "Polygon Laplacian: linear elements on virtual tetrahedra",
     "Bunge, Herholz, Kazhdan, Botsch: Polygon Laplacian Made Simple, 2020",
     {.equals_cotan_on_simplices = true, .face_local = true},
-    {.masses = {MassKind::Lumped, MassKind::Full}, .virtual_vertex = true},
+    {.masses = {MassKind::Lumped, MassKind::Full}, .virtual_vertex = true, .stiffness_alone = true},
     {"S = P^T S_tet P: linear elements on the tetrahedra of every edge, its face's and its cell's "
      "virtual vertex. Mass P^T M_tet P, by default its row sums.",
      "vertices", "vertices of common cells",

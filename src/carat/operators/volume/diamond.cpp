@@ -109,7 +109,7 @@ VolumeDiamondAssembly::VolumeDiamondAssembly(const char* name, const PolyhedralM
   result_.stiffness = std::move(patterns.stiffness);
   result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
   result_.sample_measure.resize(n_diamonds());
-  if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
+  if (options_.parts >= DiscretizationParts::Gradient) make_gradient_pattern();
 }
 
 /// K of a diamond is that of its cells by their parts of it, times the function at its centroid.
@@ -493,7 +493,7 @@ void VolumeDiamondAssembly::update(const Points& points) {
   // In closed form tetrahedra need no virtual vertices, only the gradient and reports do.
   virtuals_.cell_status.clear();
   virtuals_.faces.status.clear();
-  if (!tets_ || !compute_tets() || options_.parts != DiscretizationParts::Matrices)
+  if (!tets_ || !compute_tets() || options_.parts >= DiscretizationParts::Gradient)
     update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
   // S = -L and M = P^T M^ P   [BBA21 (31), (32)]
   if (tets_) {
@@ -506,7 +506,7 @@ void VolumeDiamondAssembly::update(const Points& points) {
                              virtuals_.faces.weights, virtuals_.cell_weights, options_.threads,
                              workspace_);
   }
-  if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
+  if (options_.parts >= DiscretizationParts::Gradient) assemble_gradient();
   if (options_.parts == DiscretizationParts::Frames) collect_frames();
   report();
 }

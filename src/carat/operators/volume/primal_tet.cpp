@@ -4,11 +4,12 @@
 
 #include <algorithm>
 
-#include "carat/assembly/cell_assembly.h"
 #include "carat/assembly/pattern.h"
 #include "carat/base/error.h"
+#include "carat/base/parallel.h"
 #include "carat/kernels/tetrahedron.h"
 #include "carat/operators/common.h"
+#include "carat/operators/linear_tets.h"
 #include "carat/operators/registry.h"
 #include "carat/operators/volume/incidence.h"
 
@@ -23,20 +24,21 @@ class PrimalTetAssembly final : public Assembly {
  private:
   void make_gradient_pattern();
   void compute_terms();
-  void fill_tet(Index c);
   void assemble_gradient();
   void collect_frames();
   void report();
 
   std::span<const Index> vertices(Index c) const { return mesh_.cell_vertices().row(c); }
-  /// Of the cell's vertices in their order: those of its first face, then the fourth.
-  Tetrahedron tet(Index c) const;
+  Tetrahedron tet(Index c) const {
+    return cell_tetrahedron(points_, incidence_, c, options_.eps_rel);
+  }
 
   PolyhedralMesh mesh_;
   DiscretizationOptions options_;
+  bool with_mass_ = options_.parts != DiscretizationParts::Stiffness;
   bool lumped_ = options_.mass == MassKind::Lumped;
   VolumeIncidence incidence_;
-  Array<double> couplings_;  // 16 a cell
+  Array<LinearTet> tets_;
   Vec3 origin_ = Vec3::Zero();
   Points points_;  // relative to the origin, so that no accuracy is lost far from it
 };
@@ -55,50 +57,28 @@ PrimalTetAssembly::PrimalTetAssembly(const PolyhedralMesh& mesh,
   check_cell_coefficient(options_, mesh_.n_cells());
   result_.name = "primal_tet";
   result_.stiffness = cell_pattern(incidence_, options_.threads);
-  result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : result_.stiffness;
+  if (with_mass_) result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : result_.stiffness;
   result_.sample_measure.resize(mesh_.n_cells());
-  couplings_.resize(16 * static_cast<std::size_t>(mesh_.n_cells()));
-  if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
-}
-
-Tetrahedron PrimalTetAssembly::tet(Index c) const {
-  const std::span<const Index> v = vertices(c);
-  const auto x = [&](std::size_t k) -> Vec3 { return points_.row(v[k]).transpose(); };
-  if (mesh_.face_cells()[mesh_.cell(c)[0]].below == c)
-    return tetrahedron(x(0), x(1), x(2), x(3), options_.eps_rel);
-  Tetrahedron turned = tetrahedron(x(1), x(0), x(2), x(3), options_.eps_rel);
-  std::swap(turned.normal[0], turned.normal[1]);
-  return turned;
-}
-
-void PrimalTetAssembly::fill_tet(Index c) {
-  double* const s = couplings_.data() + 16 * std::size_t(c);
-  const Tetrahedron t = tet(c);
-  result_.sample_measure[c] = t.volume();
-  std::fill(s, s + 16, 0.0);
-  if (!(t.determinant > 0)) return;
-  double k = 1;
-  if (options_.coefficient) {
-    Vec3 sum = Vec3::Zero();
-    for (const Index v : vertices(c)) sum += points_.row(v).transpose();
-    k = coefficient_at(options_, origin_ + sum / 4);
-  }
-  const Eigen::Matrix3d tensor = k * cell_tensor(options_, c);
-  const bool scalar = options_.cell_coefficient.cols() != 6;
-  for (int a = 0; a < 4; ++a)
-    for (int b = 0; b < a; ++b) {
-      const double value = scalar ? tensor(0, 0) * t.coupling(a, b) : t.coupling(a, b, tensor);
-      s[4 * a + b] = s[4 * b + a] = value;
-      s[5 * a] -= value;
-      s[5 * b] -= value;
-    }
+  if (options_.parts >= DiscretizationParts::Gradient) make_gradient_pattern();
 }
 
 void PrimalTetAssembly::compute_terms() {
   // The caller's function is not asked to be thread-safe.
   const int threads = options_.coefficient ? 1 : options_.threads;
-  parallel_blocks(mesh_.n_cells(), threads, [&](int, Index begin, Index end) {
-    for (Index c = begin; c < end; ++c) fill_tet(c);
+  // Near the limit one way of computing the volume has to decide, here and for the gradient.
+  const double safe = 2 * std::max(options_.eps_rel, 1e-14);
+  const Eigen::Index components = options_.cell_coefficient.cols();
+  compute_linear_tets(points_, incidence_, threads, tets_, [&](Index c, LinearTet& t) {
+    if (components == 6 || !is_thicker(t, safe))
+      t = linear_tet(tet(c), cell_tensor(options_, c));
+    else if (components == 1)
+      for (double& pair : t.pair) pair *= options_.cell_coefficient(c, 0);
+    result_.sample_measure[c] = t.volume;
+    if (!options_.coefficient || !(t.volume > 0)) return;
+    Vec3 sum = Vec3::Zero();
+    for (const Index v : vertices(c)) sum += points_.row(v).transpose();
+    const double k = coefficient_at(options_, origin_ + sum / 4);
+    for (double& pair : t.pair) pair *= k;
   });
 }
 
@@ -167,14 +147,9 @@ void PrimalTetAssembly::report() {
 void PrimalTetAssembly::update(const Points& points) {
   centre_points(points, points_, origin_);
   compute_terms();
-  assemble_cell_blocks(result_.stiffness, false, incidence_, options_.threads,
-                       [&](Index c, Index a, Index b) {
-                         return couplings_[16 * std::size_t(c) + std::size_t(4 * a + b)];
-                       });
-  assemble_cell_blocks(
-      result_.mass, lumped_, incidence_, options_.threads,
-      [&](Index c, Index a, Index b) { return result_.sample_measure[c] / (a == b ? 10 : 20); });
-  if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
+  assemble_linear_tets(result_.stiffness, with_mass_ ? &result_.mass : nullptr, lumped_, incidence_,
+                       tets_, options_.threads);
+  if (options_.parts >= DiscretizationParts::Gradient) assemble_gradient();
   if (options_.parts == DiscretizationParts::Frames) collect_frames();
   report();
 }
@@ -186,7 +161,7 @@ extern const VolumeOperator primal_tet_volume_operator = {
     "Cotan Laplacian of tetrahedra: linear elements",
     "Crane: The n-dimensional cotangent formula, 2019",
     {.equals_cotan_on_simplices = true, .simplices_only = true, .face_local = true},
-    {.masses = {MassKind::Lumped, MassKind::Full}},
+    {.masses = {MassKind::Lumped, MassKind::Full}, .stiffness_alone = true},
     {"S_ij = -1/6 of the sum of l_kl cot(theta_kl) over the tetrahedra of the edge ij, kl the "
      "opposite edge. Mass: quarters of the tetrahedra; full: linear elements.",
      "vertices", "the vertex and its neighbours: about 15 entries a row",

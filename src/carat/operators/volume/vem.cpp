@@ -76,7 +76,7 @@ VolumeVemAssembly::VolumeVemAssembly(const PolyhedralMesh& mesh,
   result_.mass =
       options_.mass == MassKind::Lumped ? diagonal_pattern(mesh_.n_vertices()) : result_.stiffness;
   result_.sample_measure.resize(mesh_.n_cells());
-  if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
+  if (options_.parts >= DiscretizationParts::Gradient) make_gradient_pattern();
 }
 
 /// \param place  one entry a vertex, scratch: its place in the cell
@@ -259,7 +259,7 @@ void VolumeVemAssembly::update(const Points& points) {
     for (Index c = begin; c < end; ++c) measure_cell(c, place);
   });
   assemble_matrices();
-  if (options_.parts != DiscretizationParts::Matrices) assemble_gradient();
+  if (options_.parts >= DiscretizationParts::Gradient) assemble_gradient();
   if (options_.parts == DiscretizationParts::Frames) collect_frames();
   report();
 }
