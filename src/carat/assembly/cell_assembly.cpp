@@ -2,30 +2,52 @@
 
 namespace carat {
 
-void CellForm::reset(const VolumeIncidence& mesh) {
-  side.assign(2 * mesh.faces.indices.size(), 0.0);
-  spoke.assign(2 * mesh.faces.indices.size(), 0.0);
+void CellForm::reset(const VolumeIncidence& mesh, bool lumped) {
   face.assign(2 * static_cast<std::size_t>(mesh.faces.n_rows()), 0.0);
   vertex.assign(mesh.cell_vertices.indices.size(), 0.0);
-  tip.assign(mesh.cell_vertices.indices.size(), 0.0);
   cell.assign(static_cast<std::size_t>(mesh.cells.n_rows()), 0.0);
+  if (lumped) return;
+  side.assign(2 * mesh.faces.indices.size(), 0.0);
+  spoke.assign(2 * mesh.faces.indices.size(), 0.0);
+  tip.assign(mesh.cell_vertices.indices.size(), 0.0);
 }
+
+namespace {
+
+double both(const Array<double>& sides, Index k) { return sides[2 * k] + sides[2 * k + 1]; }
+
+/// P^T A P 1 = P^T A 1, as weights sum to one.
+void assemble_row_sums(SparseMatrix& matrix, const VolumeIncidence& mesh, const Csr& vertex_corners,
+                       const Array<Index>& corner_faces, const Array<double>& face_weights,
+                       const Array<double>& cell_weights, const CellForm& form, int threads) {
+  parallel_blocks(mesh.n_vertices(), threads, [&](int, Index begin, Index end) {
+    for (Index row = begin; row < end; ++row) {
+      double sum = 0;
+      for (const Index corner : mesh.vertex_cell_corners.row(row))
+        sum += form.vertex[corner] + cell_weights[corner] * form.cell[mesh.corner_cells[corner]];
+      for (const Index corner : vertex_corners.row(row))
+        sum += face_weights[corner] * both(form.face, corner_faces[corner]);
+      matrix.valuePtr()[row] = sum;
+    }
+  });
+}
+
+}  // namespace
 
 void assemble_cell_form(SparseMatrix& matrix, bool lumped, const VolumeIncidence& mesh,
                         const Csr& vertex_corners, const Array<Index>& corner_faces,
                         const Array<double>& face_weights, const Array<double>& cell_weights,
                         const CellForm& form, int threads) {
-  const auto both = [](const Array<double>& sides, Index k) {
-    return sides[2 * k] + sides[2 * k + 1];
-  };
+  if (lumped) {
+    assemble_row_sums(matrix, mesh, vertex_corners, corner_faces, face_weights, cell_weights, form,
+                      threads);
+    return;
+  }
   const Index n_vertices = mesh.n_vertices();
   parallel_blocks(n_vertices, threads, [&](int, Index begin, Index end) {
     Array<Index> position(static_cast<std::size_t>(n_vertices));
     for (Index row = begin; row < end; ++row) {
       const RowWriter writer(matrix, row, position);
-      const auto add = [&](Index column, double value) {
-        writer.add(lumped ? row : column, value);
-      };
       if (mesh.vertex_cell_corners.size(row) == 0) continue;
       double diagonal = 0;
       for (const Index corner : mesh.vertex_cell_corners.row(row)) {
@@ -34,7 +56,7 @@ void assemble_cell_form(SparseMatrix& matrix, bool lumped, const VolumeIncidence
         const double own = weight * form.cell[c] + tip;
         diagonal += form.vertex[corner];
         for (Index k = mesh.cell_vertices.begin(c); k < mesh.cell_vertices.end(c); ++k)
-          add(mesh.cell_vertices.indices[k], own * cell_weights[k] + weight * form.tip[k]);
+          writer.add(mesh.cell_vertices.indices[k], own * cell_weights[k] + weight * form.tip[k]);
       }
       for (const Index corner : vertex_corners.row(row)) {
         const Index f = corner_faces[corner];
@@ -45,12 +67,12 @@ void assemble_cell_form(SparseMatrix& matrix, bool lumped, const VolumeIncidence
         const Index previous = corner == first ? last - 1 : corner - 1;
         const double weight = face_weights[corner];
         const double own = weight * both(form.face, f) + both(form.spoke, corner);
-        add(mesh.faces.indices[next], both(form.side, corner));
-        add(mesh.faces.indices[previous], both(form.side, previous));
+        writer.add(mesh.faces.indices[next], both(form.side, corner));
+        writer.add(mesh.faces.indices[previous], both(form.side, previous));
         for (Index k = first; k < last; ++k)
-          add(mesh.faces.indices[k], own * face_weights[k] + weight * both(form.spoke, k));
+          writer.add(mesh.faces.indices[k], own * face_weights[k] + weight * both(form.spoke, k));
       }
-      add(row, diagonal);
+      writer.add(row, diagonal);
     }
   });
 }

@@ -32,8 +32,8 @@ struct CellForm {
   Array<double> tip;     ///< cell corner -> s_c
   Array<double> cell;    ///< cell -> d_c
 
-  /// All entries 0.
-  void reset(const VolumeIncidence& mesh);
+  /// All entries 0. \param lumped  only row sums of A are wanted: in vertex, face and cell
+  void reset(const VolumeIncidence& mesh, bool lumped);
 };
 
 /// Adds the virtual tetrahedra of one cell, face by face. Cells can be filled in parallel.
@@ -63,10 +63,19 @@ class CellFormFiller {
     form_.cell[cell_] += a.cc;
     face_tip_ += a.cf;
   }
-  /// After the last tetrahedron over a face. \param places  of its corners in the cell
-  void end_face(Index face, const Index* places) {
-    for (Index k = mesh_.faces.begin(face); k < mesh_.faces.end(face); ++k)
-      form_.tip[first_ + *places++] += face_tip_ * face_weights_[k];
+  /// Row sums instead of a matrix: `share` at each of its vertices.
+  void add_lumped(Index face, Index place_i, Index place_j, double share) {
+    form_.vertex[first_ + place_i] += share;
+    form_.vertex[first_ + place_j] += share;
+    form_.face[2 * face + (mesh_.face_cells[face].above == cell_ ? 1 : 0)] += share;
+    form_.cell[cell_] += share;
+  }
+  /// After the last tetrahedron over a face. \param place  place(k) of its corner k in the cell
+  template <class Place>
+  void end_face(Index face, const Place& place) {
+    const Index first = mesh_.faces.begin(face), size = mesh_.faces.size(face);
+    for (Index k = 0; k < size; ++k)
+      form_.tip[first_ + place(k)] += face_tip_ * face_weights_[first + k];
     face_tip_ = 0;
   }
 
@@ -79,7 +88,7 @@ class CellFormFiller {
 };
 
 /// Fills `matrix`, whose pattern is cell_pattern(mesh), with P^T A P; into a diagonal pattern
-/// (`lumped`) go the row sums.
+/// (`lumped`) go the row sums, from those of A.
 /// \param vertex_corners  vertex -> corners of faces; \param corner_faces  corner -> face
 /// \param face_weights  corner -> affine weight; \param cell_weights  cell corner -> affine weight
 void assemble_cell_form(SparseMatrix& matrix, bool lumped, const VolumeIncidence& mesh,

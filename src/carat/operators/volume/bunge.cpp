@@ -42,8 +42,8 @@ class VolumeBungeAssembly final : public Assembly {
   // Numeric.
   bool compute_tets();
   void fill_forms();
-  void fill_cell(Index c, Array<Index>& place, Array<Index>& face_places);
-  VirtualTetMatrix stiffness_of(const Tetrahedron& tet, const Place& at) const;
+  struct Scratch;
+  void fill_cell(Index c, Scratch& scratch);
   void assemble_gradient();
   void collect_frames();
   void report();
@@ -58,8 +58,8 @@ class VolumeBungeAssembly final : public Assembly {
 
   PolyhedralMesh mesh_;
   DiscretizationOptions options_;
-  bool lumped_ = options_.mass == MassKind::Lumped;
   bool with_mass_ = options_.parts != DiscretizationParts::Stiffness;
+  bool lumped_ = with_mass_ && options_.mass == MassKind::Lumped;
   VolumeIncidence incidence_;
   Array<Index> first_tet_;  // cell -> its first virtual tetrahedron, n_cells + 1 numbers
   VirtualCells virtuals_;
@@ -120,45 +120,9 @@ Tetrahedron VolumeBungeAssembly::virtual_tet(const Place& at) const {
   const Vec3 xi = position(vertex(at.corner)), xj = position(vertex(at.next));
   const Vec3 xf = virtuals_.face_points.row(at.face).transpose();
   const Vec3 xc = virtuals_.cell_points.row(at.cell).transpose();
-  Tetrahedron tet = at.above ? tetrahedron(xj, xi, xf, xc, options_.eps_rel)
-                             : tetrahedron(xi, xj, xf, xc, options_.eps_rel);
+  Tetrahedron tet = at.above ? tetrahedron(xj, xi, xf, xc, 0) : tetrahedron(xi, xj, xf, xc, 0);
   if (at.above) std::swap(tet.normal[0], tet.normal[1]);
   return tet;
-}
-
-VirtualTetMatrix VolumeBungeAssembly::stiffness_of(const Tetrahedron& tet, const Place& at) const {
-  double k = 1;
-  if (options_.coefficient)
-    k = coefficient_at(options_,
-                       origin_ + (position(vertex(at.corner)) + position(vertex(at.next)) +
-                                  Vec3(virtuals_.face_points.row(at.face).transpose()) +
-                                  Vec3(virtuals_.cell_points.row(at.cell).transpose())) /
-                                     4);
-  const Matrix& of_cells = options_.cell_coefficient;
-  if (of_cells.cols() == 1) k *= of_cells(at.cell, 0);
-  VirtualTetMatrix a{};
-  if (of_cells.cols() == 6) {
-    const Eigen::Matrix3d tensor = k * cell_tensor(options_, at.cell);
-    a.ij = tet.coupling(0, 1, tensor);
-    a.fi = tet.coupling(0, 2, tensor);
-    a.fj = tet.coupling(1, 2, tensor);
-    a.ci = tet.coupling(0, 3, tensor);
-    a.cj = tet.coupling(1, 3, tensor);
-    a.cf = tet.coupling(2, 3, tensor);
-  } else {
-    a.ij = k * tet.coupling(0, 1);
-    a.fi = k * tet.coupling(0, 2);
-    a.fj = k * tet.coupling(1, 2);
-    a.ci = k * tet.coupling(0, 3);
-    a.cj = k * tet.coupling(1, 3);
-    a.cf = k * tet.coupling(2, 3);
-  }
-  // Rows sum to zero.
-  a.ii = -(a.ij + a.fi + a.ci);
-  a.jj = -(a.ij + a.fj + a.cj);
-  a.ff = -(a.fi + a.fj + a.cf);
-  a.cc = -(a.ci + a.cj + a.cf);
-  return a;
 }
 
 VirtualTetMatrix mass_of(double volume) {
@@ -190,38 +154,98 @@ bool VolumeBungeAssembly::compute_tets() {
   return clear;
 }
 
-void VolumeBungeAssembly::fill_cell(Index c, Array<Index>& place, Array<Index>& face_places) {
+/// Of one thread: a cell's vertices, and the corners of one of its faces.
+struct VolumeBungeAssembly::Scratch {
+  struct Corner {
+    Vec3 x, cross;  // relative to the face point; times the tip
+    double length2, to_tip2;
+    Index place;  // in the cell
+  };
+  Array<Index> place;  // of vertices in the cell
+  std::vector<Corner> corners;
+};
+
+void VolumeBungeAssembly::fill_cell(Index c, Scratch& scratch) {
+  const Csr& faces = mesh_.face_mesh().faces();
   const Array<double>& weights = virtuals_.faces.weights;
   CellFormFiller stiffness(stiffness_, incidence_, weights, c);
   CellFormFiller mass(mass_, incidence_, weights, c);
-  Index k = 0;
-  for (const Index v : mesh_.cell_vertices().row(c)) place[v] = k++;
-  for_tets(c, [&](const Place& at) {
-    const Tetrahedron tet = virtual_tet(at);
-    const double volume = tet.volume();
-    result_.sample_measure[at.tet] = volume;
-    const Index i = place[vertex(at.corner)], j = place[vertex(at.next)];
-    if (volume > 0) {
-      stiffness.add(at.face, at.corner, at.next, i, j, stiffness_of(tet, at));
-      mass.add(at.face, at.corner, at.next, i, j, mass_of(volume));
+  Index next_place = 0;
+  for (const Index v : mesh_.cell_vertices().row(c)) scratch.place[v] = next_place++;
+  const Vec3 xc = virtuals_.cell_points.row(c).transpose();
+  const bool is_tensor = options_.cell_coefficient.cols() == 6;
+  const Eigen::Matrix3d tensor = cell_tensor(options_, c);
+  const double of_cell = is_tensor ? 1 : tensor(0, 0);
+  const auto dot = [&](const Vec3& a, const Vec3& b) {
+    return is_tensor ? a.dot(tensor * b) : a.dot(b);
+  };
+  const double limit2 = 36 * options_.eps_rel * options_.eps_rel;
+  Index tet = first_tet_[c];
+  for (const Index f : mesh_.cell(c)) {
+    const Index first = faces.begin(f), size = faces.size(f);
+    const bool above = mesh_.face_cells()[f].above == c;
+    const Vec3 xf = virtuals_.face_points.row(f).transpose();
+    const Vec3 tip = xc - xf;
+    const double tip2 = tip.squaredNorm();
+    if (scratch.corners.size() < static_cast<std::size_t>(size))
+      scratch.corners.resize(static_cast<std::size_t>(size));
+    for (Index k = 0; k < size; ++k) {
+      const Index v = faces.indices[first + k];
+      Scratch::Corner& corner = scratch.corners[k];
+      corner.x = position(v) - xf;
+      corner.cross = corner.x.cross(tip);
+      corner.length2 = corner.x.squaredNorm();
+      corner.to_tip2 = (corner.x - tip).squaredNorm();
+      corner.place = scratch.place[v];
     }
-    face_places.push_back(i);
-    if (at.next > at.corner) return;
-    stiffness.end_face(at.face, face_places.data());
-    mass.end_face(at.face, face_places.data());
-    face_places.clear();
-  });
+    for (Index k = 0; k < size; ++k, ++tet) {
+      const Index next = k + 1 == size ? 0 : k + 1;
+      const Scratch::Corner &i = scratch.corners[k], &j = scratch.corners[next];
+      // The normals of Tetrahedron: opposite to x_i is x_j x tip, to x_j -x_i x tip, to x_c this.
+      const Vec3 normal = i.x.cross(j.x);
+      const double det = above ? normal.dot(tip) : -normal.dot(tip);
+      const double size2 =
+          std::max({i.length2, j.length2, tip2, i.to_tip2, j.to_tip2, (i.x - j.x).squaredNorm()});
+      const bool counts = det > 0 && det * det > limit2 * (size2 * size2 * size2);
+      const double volume = counts ? det / 6 : 0.0;
+      result_.sample_measure[tet] = volume;
+      if (!counts) continue;
+      double scale = of_cell / (6 * det);
+      if (options_.coefficient)
+        scale *= coefficient_at(options_, origin_ + xf + (i.x + j.x + tip) / 4);
+      VirtualTetMatrix a;
+      a.ii = scale * dot(j.cross, j.cross);
+      a.jj = scale * dot(i.cross, i.cross);
+      a.ij = -scale * dot(i.cross, j.cross);
+      a.ci = scale * dot(j.cross, normal);
+      a.cj = -scale * dot(i.cross, normal);
+      a.cc = scale * dot(normal, normal);
+      // Rows sum to zero.
+      a.fi = -(a.ii + a.ij + a.ci);
+      a.fj = -(a.jj + a.ij + a.cj);
+      a.cf = -(a.ci + a.cj + a.cc);
+      a.ff = -(a.fi + a.fj + a.cf);
+      stiffness.add(f, first + k, first + next, i.place, j.place, a);
+      if (lumped_)
+        mass.add_lumped(f, i.place, j.place, volume / 4);
+      else if (with_mass_)
+        mass.add(f, first + k, first + next, i.place, j.place, mass_of(volume));
+    }
+    stiffness.end_face(f, [&](Index k) { return scratch.corners[k].place; });
+    if (with_mass_ && !lumped_) mass.end_face(f, [&](Index k) { return scratch.corners[k].place; });
+  }
 }
 
 void VolumeBungeAssembly::fill_forms() {
-  stiffness_.reset(incidence_);
-  mass_.reset(incidence_);
+  stiffness_.reset(incidence_, false);
+  if (with_mass_) mass_.reset(incidence_, lumped_);
   result_.sample_measure.resize(n_tets());
   // The caller's function is not asked to be thread-safe.
   const int threads = options_.coefficient ? 1 : options_.threads;
   parallel_blocks(mesh_.n_cells(), threads, [&](int, Index begin, Index end) {
-    Array<Index> place(static_cast<std::size_t>(mesh_.n_vertices())), face_places;
-    for (Index c = begin; c < end; ++c) fill_cell(c, place, face_places);
+    Scratch scratch;
+    scratch.place.resize(static_cast<std::size_t>(mesh_.n_vertices()));
+    for (Index c = begin; c < end; ++c) fill_cell(c, scratch);
   });
 }
 
@@ -275,7 +299,7 @@ void VolumeBungeAssembly::assemble_gradient() {
         }
         double* const rows = values + outer[3 * at.tet];
         const Tetrahedron tet = virtual_tet(at);
-        if (!(tet.determinant > 0)) {
+        if (!(result_.sample_measure[at.tet] > 0 && tet.determinant > 0)) {
           std::fill(rows, rows + 3 * n, 0.0);
           return;
         }

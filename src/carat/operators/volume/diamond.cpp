@@ -4,20 +4,19 @@
 #include "carat/operators/volume/diamond.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "carat/assembly/pattern.h"
-#include "carat/assembly/tet_diamond_assembly.h"
 #include "carat/assembly/volume_diamond_assembly.h"
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
 #include "carat/kernels/diamond_3d.h"
 #include "carat/kernels/diamond_split.h"
-#include "carat/kernels/tet_diamond.h"
 #include "carat/kernels/virtual_cell.h"
 #include "carat/operators/common.h"
+#include "carat/operators/linear_tets.h"
 #include "carat/operators/registry.h"
+#include "carat/operators/tet_diamonds.h"
 #include "carat/operators/volume/incidence.h"
 #include "carat/prolongation/virtual_cells.h"
 
@@ -41,8 +40,6 @@ class VolumeDiamondAssembly final : public Assembly {
   void collect_columns(Index f, Array<Index>& columns) const;
 
   // Numeric.
-  bool compute_tets();
-  TetFaceDiamonds tet_face(Index f, Index own, Index across, bool above) const;
   void compute_faces();
   void add_split(const Diamond3d& diamond, const DiamondCrossing<3>& crossing, double gamma,
                  VolumeDiamondWorkspace::Corner& a, VolumeDiamondWorkspace::Corner& b,
@@ -82,7 +79,7 @@ class VolumeDiamondAssembly final : public Assembly {
   VolumeDiamondWorkspace workspace_;
   bool tets_;  // all cells are tetrahedra, K = 1, nothing beyond the paper: the closed form serves
   TetTopology tet_topology_;
-  TetDiamondWorkspace tet_workspace_;
+  Array<TetDiamonds> tet_diamonds_;
   Vec3 origin_ = Vec3::Zero();
   Points points_;  // relative to the origin, so that no accuracy is lost far from it
 };
@@ -93,9 +90,7 @@ VolumeDiamondAssembly::VolumeDiamondAssembly(const char* name, const PolyhedralM
   check_cell_coefficient(options_, mesh_.n_cells());
   result_.name = name;
   tets_ = plain() && !options_.coefficient && options_.cell_coefficient.size() == 0 &&
-          mesh_.n_cells() > 0;
-  for (Index c = 0; c < mesh_.n_cells() && tets_; ++c)
-    tets_ = mesh_.cells().size(c) == 4 && mesh_.cell_vertices().size(c) == 4;
+          mesh_.n_cells() > 0 && all_tetrahedra(incidence_);
   VolumeDiamondPatterns patterns;
   if (tets_) {
     tet_topology_ = tet_topology(incidence_, options_.threads);
@@ -108,7 +103,7 @@ VolumeDiamondAssembly::VolumeDiamondAssembly(const char* name, const PolyhedralM
   }
   result_.stiffness = std::move(patterns.stiffness);
   result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
-  result_.sample_measure.resize(n_diamonds());
+  result_.sample_measure.setZero(n_diamonds());  // of faces without cells, for good
   if (options_.parts >= DiscretizationParts::Gradient) make_gradient_pattern();
 }
 
@@ -282,53 +277,6 @@ void VolumeDiamondAssembly::compute_faces() {
                     [&](int, Index begin, Index end) { compute(begin, end); });
 }
 
-/// \param own, across  the vertices opposite to the face; across < 0: none
-TetFaceDiamonds VolumeDiamondAssembly::tet_face(Index f, Index own, Index across,
-                                                bool above) const {
-  // The same operations from either cell, so that both get the same bits.
-  const std::span<const Index> face = mesh_.face(f);
-  const Vec3 a = position(face[0]), b = position(face[1]), c = position(face[2]);
-  const Vec3 x_own = position(own);
-  const Vec3 x_across = across < 0 ? Vec3(a + ((b - a) + (c - a)) / 3) : position(across);
-  const Vec3 tip = 0.25 * (above ? x_own - x_across : x_across - x_own);
-  return tet_face_diamonds(a, b, c, tip, options_.eps_rel);
-}
-
-/// \return whether all tetrahedra have a volume: then there is nothing to report of their points
-bool VolumeDiamondAssembly::compute_tets() {
-  std::atomic<bool> sound = true;
-  const Csr& cells = mesh_.cells();
-  const Csr& faces = mesh_.face_mesh().faces();
-  tet_workspace_.terms.resize(static_cast<std::size_t>(mesh_.n_cells()));
-  // Faces without cells; the others are overwritten.
-  result_.sample_measure.setZero();
-  parallel_blocks(mesh_.n_cells(), options_.threads, [&](int, Index begin, Index end) {
-    for (Index c = begin; c < end; ++c) {
-      TetTerm term{};
-      const Index* const vertices =
-          mesh_.cell_vertices().indices.data() + mesh_.cell_vertices().begin(c);
-      if (is_flat_tetrahedron(position(vertices[0]), position(vertices[1]), position(vertices[2]),
-                              position(vertices[3])))
-        sound = false;
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Index f = cells.indices[cells.begin(c) + static_cast<Index>(k)];
-        const FaceCells sides = mesh_.face_cells()[f];
-        const bool above = sides.above == c;
-        const auto& place = tet_topology_.places[c][k];
-        const Index across = tet_topology_.across[c][k];
-        TetFaceDiamonds d = tet_face(f, vertices[place[3]], across, above);
-        if (!above)
-          for (double& alpha : d.alpha) alpha = -alpha;
-        term.add_face(k, place, across < 0, d.ab, d.ac, d.bc, d.alpha, d.gamma, d.volume);
-        if (!above || sides.below < 0)
-          result_.sample_measure.segment<3>(faces.begin(f)).setConstant(d.volume);
-      }
-      tet_workspace_.terms[c] = term;
-    }
-  });
-  return sound;
-}
-
 void VolumeDiamondAssembly::collect_columns(Index f, Array<Index>& columns) const {
   columns.clear();
   const FaceCells cells = mesh_.face_cells()[f];
@@ -490,15 +438,20 @@ void VolumeDiamondAssembly::report() {
 
 void VolumeDiamondAssembly::update(const Points& points) {
   centre_points(points, points_, origin_);
-  // In closed form tetrahedra need no virtual vertices, only the gradient and reports do.
-  virtuals_.cell_status.clear();
-  virtuals_.faces.status.clear();
-  if (!tets_ || !compute_tets() || options_.parts >= DiscretizationParts::Gradient)
+  const bool all_sound =
+      tets_ && compute_tet_diamonds(points_, incidence_, tet_topology_, options_.eps_rel,
+                                    options_.threads, tet_diamonds_, result_.sample_measure);
+  if (!all_sound || options_.parts >= DiscretizationParts::Gradient) {
     update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
+  } else {
+    // In closed form tetrahedra need no virtual vertices, only the gradient and reports do.
+    virtuals_.cell_status.clear();
+    virtuals_.faces.status.clear();
+  }
   // S = -L and M = P^T M^ P   [BBA21 (31), (32)]
   if (tets_) {
     assemble_tet_diamonds(result_.stiffness, result_.mass, lumped_, incidence_, tet_topology_,
-                          options_.threads, tet_workspace_);
+                          tet_diamonds_, options_.threads);
   } else {
     compute_faces();
     assemble_volume_diamonds(result_.stiffness, result_.mass, lumped_, incidence_, rings_,

@@ -1,0 +1,37 @@
+#pragma once
+// The minimal diamonds at the faces of several tetrahedra at a time.
+//
+// The three minimal diamonds of a face have one gradient. With ua, ub, uc at the face's vertices
+// and w = (u_own - u_across) / 4 their energy is that of three couplings in the face, plus
+// 2 w alpha . (ua, ub, uc) + gamma w^2.   [BBA21 (28)]
+
+#include "carat/base/types.h"
+#include "carat/kernels/tetrahedron_block.h"
+
+namespace carat {
+
+/// Couplings of one tetrahedron, whose vertices are numbered 0 to 3; face k is opposite to vertex
+/// k. Sixteen numbers: two lines of the cache.
+struct TetDiamonds {
+  double pair[6];       ///< -S between vertices 01, 02, 03, 12, 13, 23, this cell's part  [length]
+  double across[4];     ///< -S between vertex k and the one across face k
+  double face_mass[4];  ///< M between two vertices of face k, this cell's part  [length^3]
+  double cell_mass;     ///< M between two vertices, of the cell's virtual vertex
+  double unused;
+};
+
+/// One tetrahedron of a block.
+struct TetDiamondInput {
+  const Index* vertices;  ///< four ascending, then those across their faces, -1 at the boundary
+  double sign;            ///< + if vertex 3 sees 0, 1, 2 counter-clockwise
+};
+
+/// \param points   as in Points::data()  [length]
+/// \param eps_rel  |D| <= eps_rel * size^3 counts as degenerate: the face adds nothing
+/// \param volumes  of one minimal diamond of each face, 0 if they are degenerate  [length^3]
+/// \return whether all tetrahedra have a volume well above rounding noise, with any sign
+/// A face gets the same bits from both of its cells, wherever in a block they stand.
+bool tet_diamond_block(const double* points, const TetDiamondInput* input, double eps_rel,
+                       TetDiamonds* const* tets, double (*volumes)[4]);
+
+}  // namespace carat
