@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "carat/assembly/row_assembly.h"
 #include "carat/base/parallel.h"
 
 namespace carat {
@@ -44,32 +43,55 @@ void fill_cells(const VolumeIncidence& mesh, const CellRings& rings,
   }
 }
 
+/// Sums of one row at the places of its columns, in the cache while cells and faces are added.
+struct RowSums {
+  std::vector<double> stiffness, mass;
+};
+
 void fill_rows(SparseMatrix& stiffness_matrix, SparseMatrix& mass_matrix, bool lumped_mass,
                const VolumeIncidence& mesh, const CellRings& rings, const Csr& vertex_corners,
                const Array<Index>& corner_faces, const Array<double>& face_weights,
                const Array<double>& cell_weights, Index begin, Index end,
-               const VolumeDiamondWorkspace& values, VolumeDiamondWorkspace::Thread& scratch) {
+               const VolumeDiamondWorkspace& values, Array<Index>& places) {
+  RowSums sums;
+  Index* const place = places.data();
+  const Index* const cell_vertices = mesh.cell_vertices.indices.data();
+  const Index* const face_vertices = mesh.faces.indices.data();
+  const Corner* const corners = values.corners.data();
+  const double* const of_face = face_weights.data();
   for (Index row = begin; row < end; ++row) {
-    const RowWriter stiffness(stiffness_matrix, row, scratch.stiffness_position);
-    const RowWriter mass(mass_matrix, row, scratch.mass_position);
+    const Index row_begin = stiffness_matrix.outerIndexPtr()[row];
+    const Index size = stiffness_matrix.outerIndexPtr()[row + 1] - row_begin;
+    const Index* const columns = stiffness_matrix.innerIndexPtr() + row_begin;
+    for (Index k = 0; k < size; ++k) place[columns[k]] = k;
+    sums.stiffness.assign(static_cast<std::size_t>(size), 0.0);
+    sums.mass.assign(static_cast<std::size_t>(size), 0.0);
+    double* const stiffness = sums.stiffness.data();
+    double* const mass = sums.mass.data();
     double diagonal = 0, diagonal_mass = 0;
     for (const Index cell_corner : mesh.vertex_cell_corners.row(row)) {
       const Index c = mesh.corner_cells[cell_corner];
       const Index first = mesh.cell_vertices.begin(c), n = mesh.cell_vertices.size(c);
-      const Index* const vertices = mesh.cell_vertices.indices.data() + first;
+      const Index* const vertices = cell_vertices + first;
       const Index* const ring = rings.ring.data() + rings.ring_offsets[c];
       const double* const coupling = values.coupling.data() + first + rings.ring_offsets[c];
       const double* const weights = cell_weights.data() + first;
       const double weight = cell_weights[cell_corner], own = values.own[cell_corner];
-      for (Index k = 0; k < n; ++k)
-        stiffness.add(vertices[k], weight * coupling[k] + own * weights[k]);
-      const Index n_ring = rings.ring_size(c);
-      for (Index k = 0; k < n_ring; ++k) stiffness.add(ring[k], weight * coupling[n + k]);
       const double mass_weight = weight * values.cell_mass[c];
-      if (lumped_mass)
+      if (lumped_mass) {
         diagonal_mass += mass_weight;  // the weights of a cell sum to one
-      else
-        for (Index k = 0; k < n; ++k) mass.add(vertices[k], mass_weight * weights[k]);
+        for (Index k = 0; k < n; ++k)
+          stiffness[place[vertices[k]]] += weight * coupling[k] + own * weights[k];
+      } else {
+        for (Index k = 0; k < n; ++k) {
+          const Index at = place[vertices[k]];
+          stiffness[at] += weight * coupling[k] + own * weights[k];
+          mass[at] += mass_weight * weights[k];
+        }
+      }
+      const double* const across = coupling + n;
+      const Index n_ring = rings.ring_size(c);
+      for (Index k = 0; k < n_ring; ++k) stiffness[place[ring[k]]] += weight * across[k];
     }
     for (const Index corner : vertex_corners.row(row)) {
       const Index f = corner_faces[corner];
@@ -78,27 +100,34 @@ void fill_rows(SparseMatrix& stiffness_matrix, SparseMatrix& mass_matrix, bool l
       const Index first = mesh.faces.begin(f), last = mesh.faces.end(f);
       const Index next = corner + 1 == last ? first : corner + 1;
       const Index previous = corner == first ? last - 1 : corner - 1;
-      const Index* const vertices = mesh.faces.indices.data();
-      const Corner& own = values.corners[corner];
+      const Corner& own = corners[corner];
       const Face& face = values.faces[f];
-      const double weight = face_weights[corner];
+      const double weight = of_face[corner];
       const double face_weight = face.spokes * weight - own.spoke;
+      const double mass_weight = weight * face.mass;
       diagonal += own.diagonal;
       diagonal_mass += own.mass;
-      stiffness.add(vertices[next], -own.side);
-      stiffness.add(vertices[previous], -values.corners[previous].side);
-      for (Index k = first; k < last; ++k)
-        stiffness.add(vertices[k],
-                      face_weight * face_weights[k] - weight * values.corners[k].spoke);
-      const double mass_weight = weight * face.mass;
-      if (lumped_mass)
-        diagonal_mass += mass_weight;
-      else
-        for (Index k = first; k < last; ++k) mass.add(vertices[k], mass_weight * face_weights[k]);
+      if (lumped_mass) diagonal_mass += mass_weight;
+      stiffness[place[face_vertices[next]]] -= own.side;
+      stiffness[place[face_vertices[previous]]] -= corners[previous].side;
+      for (Index k = first; k < last; ++k) {
+        const Index at = place[face_vertices[k]];
+        stiffness[at] += face_weight * of_face[k] - weight * corners[k].spoke;
+        mass[at] += mass_weight * of_face[k];
+      }
     }
-    const bool referenced = mesh.vertex_cell_corners.size(row) > 0;
-    if (referenced) stiffness.add(row, diagonal);
-    if (referenced || lumped_mass) mass.add(row, diagonal_mass);
+    if (size > 0) {
+      stiffness[place[row]] += diagonal;
+      mass[place[row]] += diagonal_mass;
+      std::copy(stiffness, stiffness + size, stiffness_matrix.valuePtr() + row_begin);
+    }
+    if (lumped_mass) {
+      mass_matrix.valuePtr()[row] = diagonal_mass;
+    } else {
+      for (Index k = mass_matrix.outerIndexPtr()[row]; k < mass_matrix.outerIndexPtr()[row + 1];
+           ++k)
+        mass_matrix.valuePtr()[k] = mass[place[mass_matrix.innerIndexPtr()[k]]];
+    }
   }
 }
 
@@ -113,16 +142,15 @@ void assemble_volume_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool 
   workspace.own.resize(cell_weights.size());
   workspace.coupling.resize(cell_weights.size() + rings.ring.size());
   workspace.cell_mass.resize(static_cast<std::size_t>(n_cells));
-  workspace.threads.resize(static_cast<std::size_t>(resolve_threads(threads)));
+  workspace.places.resize(static_cast<std::size_t>(resolve_threads(threads)));
   parallel_blocks(n_cells, threads, [&](int, Index begin, Index end) {
     fill_cells(mesh, rings, face_weights, cell_weights, begin, end, workspace);
   });
   parallel_blocks(n_vertices, threads, [&](int block, Index begin, Index end) {
-    VolumeDiamondWorkspace::Thread& scratch = workspace.threads[static_cast<std::size_t>(block)];
-    scratch.stiffness_position.resize(static_cast<std::size_t>(n_vertices));
-    scratch.mass_position.resize(static_cast<std::size_t>(n_vertices));
+    Array<Index>& places = workspace.places[static_cast<std::size_t>(block)];
+    places.resize(static_cast<std::size_t>(n_vertices));
     fill_rows(stiffness, mass, lumped_mass, mesh, rings, vertex_corners, corner_faces, face_weights,
-              cell_weights, begin, end, workspace, scratch);
+              cell_weights, begin, end, workspace, places);
   });
 }
 

@@ -38,12 +38,9 @@ struct VolumeDiamondWorkspace {
   Array<Corner> corners;
   Array<Face> faces;
   Array<double> cell_mass;
-  Array<double> own;       ///< cell corner -> b_c
-  Array<double> coupling;  ///< the bracket, over the vertices and the ring of every cell
-  struct Thread {
-    Array<Index> stiffness_position, mass_position;
-  };
-  std::vector<Thread> threads;
+  Array<double> own;                 ///< cell corner -> b_c
+  Array<double> coupling;            ///< the bracket, over the vertices and the ring of every cell
+  std::vector<Array<Index>> places;  ///< one a thread: vertex -> its place in the row
 };
 
 /// Fills `stiffness` and `mass`, whose patterns are those of diamond_patterns(mesh, rings) (the

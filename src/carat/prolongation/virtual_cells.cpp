@@ -46,15 +46,25 @@ void load(const PolyhedralMesh& mesh, const Points& points, const Points& face_p
 void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
                           const VirtualVertexRule& rule, int threads, VirtualCells& result) {
   update_virtual_vertices(mesh.face_mesh(), points, rule, threads, result.faces);
-  result.face_points = face_points(mesh.face_mesh(), points, result.faces.weights);
+  result.face_points.resize(mesh.n_faces(), 3);
+  result.face_moments.resize(static_cast<std::size_t>(mesh.n_faces()));
   const Csr& cell_vertices = mesh.cell_vertices();
   result.cell_weights.resize(cell_vertices.indices.size());
   result.cell_points.resize(mesh.n_cells(), 3);
   result.cell_status.resize(static_cast<std::size_t>(mesh.n_cells()));
-  Array<FaceMoment> moments(static_cast<std::size_t>(mesh.n_faces()));
+  Array<FaceMoment>& moments = result.face_moments;
   parallel_blocks(mesh.n_faces(), threads, [&](int, Index begin, Index end) {
-    for (Index f = begin; f < end; ++f)
-      moments[f] = face_moment(points, mesh.face(f), result.face_points.row(f).transpose());
+    for (Index f = begin; f < end; ++f) {
+      // About one vertex, so that no accuracy is lost far from the origin.
+      const std::span<const Index> face = mesh.face(f);
+      const double* weight = result.faces.weights.data() + mesh.face_mesh().faces().begin(f);
+      const Eigen::RowVector3d anchor = points.row(face[0]);
+      Eigen::RowVector3d point = Eigen::RowVector3d::Zero();
+      for (const Index v : face) point += *weight++ * (points.row(v) - anchor);
+      point += anchor;
+      result.face_points.row(f) = point;
+      moments[f] = face_moment(points, face, point.transpose());
+    }
   });
   parallel_blocks(mesh.n_cells(), threads, [&](int, Index begin, Index end) {
     VirtualCellKernel kernel(rule);
@@ -90,8 +100,7 @@ void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
           ++weight;
         }
       }
-      // About one vertex, so that no accuracy is lost far from the origin.
-      const Eigen::RowVector3d anchor = points.row(vertices[0]);
+      const Eigen::RowVector3d anchor = points.row(vertices[0]);  // as for faces
       Eigen::RowVector3d offset = Eigen::RowVector3d::Zero();
       for (std::size_t k = 0; k < vertices.size(); ++k)
         offset += composed[k] * (points.row(vertices[k]) - anchor);

@@ -2,6 +2,7 @@
 // The virtual vertices of the faces and cells of a volume mesh, and the prolongation to them.
 
 #include "carat/base/diagnostics.h"
+#include "carat/kernels/virtual_cell.h"
 #include "carat/kernels/virtual_vertex.h"
 #include "carat/mesh/polyhedral_mesh.h"
 #include "carat/prolongation/virtual_vertices.h"
@@ -16,6 +17,7 @@ struct VirtualCells {
   Array<double> cell_weights;  ///< cell corner -> affine weight of its vertex  [BBA21 (29), (30)]
   Points cell_points;          ///< (n_cells, 3), sum of weights times positions  [length]
   Array<VirtualVertexStatus> cell_status;
+  Array<FaceMoment> face_moments;  ///< of all faces
 };
 
 /// The point of a cell minimises the sum of its squared virtual tetrahedra (rule.point
