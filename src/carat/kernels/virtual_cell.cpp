@@ -49,6 +49,18 @@ void add_square(FaceMoment& a, const Vec3& x) {
   a.yz += x.y() * x.z();
 }
 
+/// Whether x is not clearly behind one of the planes. A triangle without area has no side to be on.
+/// \param size2  square of the cell's size
+bool flips_a_tetrahedron(const CellGeometry& cell, const Vec3& x, double size2) {
+  return std::any_of(cell.virtual_planes.begin(), cell.virtual_planes.end(),
+                     [&](const HalfSpace& plane) {
+                       const double area2 = plane.normal.squaredNorm();
+                       const double depth = plane.offset - plane.normal.dot(x);
+                       return area2 > kNoise * kNoise * size2 * size2 &&
+                              !(depth > 0 && depth * depth > kNoise * kNoise * size2 * area2);
+                     });
+}
+
 }  // namespace
 
 FaceMoment face_moment(const Points& points, std::span<const Index> face, const Vec3& point) {
@@ -93,15 +105,6 @@ bool VirtualCellKernel::set_weights(const CellGeometry& cell, double* weights) {
   return true;
 }
 
-bool VirtualCellKernel::flips_a_tetrahedron(const CellGeometry& cell) const {
-  return std::any_of(
-      cell.virtual_planes.begin(), cell.virtual_planes.end(), [&](const HalfSpace& plane) {
-        // A triangle without area has no side to be on.
-        const double area = plane.normal.norm();
-        return area > kNoise && !(plane.offset - plane.normal.dot(offset_) > kNoise * area);
-      });
-}
-
 VirtualVertexStatus VirtualCellKernel::compute(CellGeometry& cell, double* weights) {
   const std::size_t m = cell.vertices.size() + cell.face_points.size();
   const auto use_mean = [&] { std::fill(weights, weights + m, 1.0 / static_cast<double>(m)); };
@@ -123,19 +126,20 @@ VirtualVertexStatus VirtualCellKernel::compute(CellGeometry& cell, double* weigh
   const double scale2 = scale * scale, scale4 = scale2 * scale2;
   for (FaceMoment& a : cell.moments)
     a = {scale4 * a.xx, scale4 * a.yy, scale4 * a.zz, scale4 * a.xy, scale4 * a.xz, scale4 * a.yz};
-  for (HalfSpace& plane : cell.virtual_planes) {
-    plane.normal *= scale2;
-    plane.offset = scale * (scale2 * plane.offset) - plane.normal.dot(scale * mean);
-  }
   if ((rule_.point != VirtualPoint::Centroid && !minimise_volume(cell)) ||
       !set_weights(cell, weights)) {
     use_mean();
     return VirtualVertexStatus::Degenerate;
   }
-  if (!flips_a_tetrahedron(cell)) return VirtualVertexStatus::Regular;
+  if (!flips_a_tetrahedron(cell, mean + offset_ / scale, size2))
+    return VirtualVertexStatus::Regular;
+  for (HalfSpace& plane : cell.virtual_planes) {
+    plane.normal *= scale2;
+    plane.offset = scale * (scale2 * plane.offset) - plane.normal.dot(scale * mean);
+  }
   const Vec3 flipped = offset_;
   if (rule_.keep_in_kernel && half_space_center(cell.virtual_planes, offset_) &&
-      set_weights(cell, weights) && !flips_a_tetrahedron(cell))
+      set_weights(cell, weights) && !flips_a_tetrahedron(cell, offset_, 1))
     return VirtualVertexStatus::Moved;
   offset_ = flipped;
   set_weights(cell, weights);

@@ -43,7 +43,6 @@ class VirtualCellKernel {
  private:
   bool minimise_volume(const CellGeometry& cell);
   bool set_weights(const CellGeometry& cell, double* weights);
-  bool flips_a_tetrahedron(const CellGeometry& cell) const;
 
   VirtualVertexRule rule_;
   Vec3 offset_;  // relative to the mean of vertices and face points

@@ -19,23 +19,31 @@ bool is_tetrahedron(const PolyhedralMesh& mesh, Index c) {
 void load(const PolyhedralMesh& mesh, const Points& points, const Points& face_points,
           const Array<FaceMoment>& moments, Index c, CellGeometry& cell) {
   const std::span<const Index> vertices = mesh.cell_vertices().row(c);
+  const std::span<const Index> faces = mesh.cell(c);
   const Vec3 anchor = points.row(vertices[0]).transpose();
-  cell.vertices.clear();
-  cell.face_points.clear();
-  cell.moments.clear();
-  cell.virtual_planes.clear();
-  for (const Index v : vertices) cell.vertices.push_back(Vec3(points.row(v).transpose()) - anchor);
-  for (const Index f : mesh.cell(c)) {
-    const Vec3 xf = Vec3(face_points.row(f).transpose()) - anchor;
-    cell.face_points.push_back(xf);
-    cell.moments.push_back(moments[f]);
+  cell.vertices.resize(vertices.size());
+  cell.face_points.resize(faces.size());
+  cell.moments.resize(faces.size());
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    cell.vertices[k] = Vec3(points.row(vertices[k]).transpose()) - anchor;
+  std::size_t n_planes = 0;
+  for (const Index f : faces) n_planes += mesh.face(f).size();
+  cell.virtual_planes.resize(n_planes);
+  HalfSpace* plane = cell.virtual_planes.data();
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    const Index f = faces[k];
+    const Vec3 origin = face_points.row(f).transpose();
+    const Vec3 xf = origin - anchor;
+    cell.face_points[k] = xf;
+    cell.moments[k] = moments[f];
     const double sign = mesh.face_cells()[f].below == c ? 0.5 : -0.5;
     const std::span<const Index> face = mesh.face(f);
-    Vec3 previous = Vec3(points.row(face.back()).transpose()) - anchor - xf;
+    Vec3 previous = Vec3(points.row(face.back()).transpose()) - origin;
     for (const Index v : face) {
-      const Vec3 next = Vec3(points.row(v).transpose()) - anchor - xf;
-      const Vec3 area = sign * previous.cross(next);
-      cell.virtual_planes.push_back({area, area.dot(xf)});
+      const Vec3 next = Vec3(points.row(v).transpose()) - origin;
+      plane->normal = sign * previous.cross(next);
+      plane->offset = plane->normal.dot(xf);
+      ++plane;
       previous = next;
     }
   }
