@@ -63,6 +63,15 @@ TEST(LinearTets, bunge_agrees_with_its_virtual_tetrahedra) {
   EXPECT_GT(discretize(folded(), "bunge").diagnostics.count("excluded_samples"), 0);
 }
 
+TEST(LinearTets, masses_do_not_depend_on_the_coefficient) {
+  const PolyhedralMesh mesh = generate_volume("cube-tets", {.level = 1, .jitter = 0.3});
+  for (const char* const name : {"bunge", "primal_tet"}) {
+    const Discretization plain = discretize(mesh, name);
+    for (const Matrix& k : {scalars(mesh.n_cells()), tensors(mesh.n_cells())})
+      EXPECT_EQ(values(discretize(mesh, name, {.cell_coefficient = k}).mass), values(plain.mass));
+  }
+}
+
 TEST(LinearTets, thin_tetrahedra_are_left_to_the_general_form) {
   const PolyhedralMesh mesh = generate_volume("cube-tets", {.level = 1, .jitter = 0.3});
   // Some virtual tetrahedra count at this limit, others of the same cell do not.

@@ -144,7 +144,9 @@ bool VolumeBungeAssembly::compute_tets() {
           if (!is_thicker(turned, kNoise)) clear = false;
           tet = {};
         } else if (components == 6) {
+          const double volume = tet.volume;  // the same bits with any K
           tet = linear_tet(cell_tetrahedron(points_, incidence_, c, 0), cell_tensor(options_, c));
+          tet.volume = volume;
         } else if (components == 1) {
           for (double& pair : tet.pair) pair *= options_.cell_coefficient(c, 0);
         }

@@ -69,10 +69,14 @@ void PrimalTetAssembly::compute_terms() {
   const double safe = 2 * std::max(options_.eps_rel, 1e-14);
   const Eigen::Index components = options_.cell_coefficient.cols();
   compute_linear_tets(points_, incidence_, threads, tets_, [&](Index c, LinearTet& t) {
-    if (components == 6 || !is_thicker(t, safe))
+    const double volume = t.volume;
+    const bool thin = !is_thicker(t, safe);
+    if (thin || components == 6) {
       t = linear_tet(tet(c), cell_tensor(options_, c));
-    else if (components == 1)
+      if (!thin) t.volume = volume;  // the same bits with any K
+    } else if (components == 1) {
       for (double& pair : t.pair) pair *= options_.cell_coefficient(c, 0);
+    }
     result_.sample_measure[c] = t.volume;
     if (!options_.coefficient || !(t.volume > 0)) return;
     Vec3 sum = Vec3::Zero();
