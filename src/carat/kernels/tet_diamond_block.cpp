@@ -1,6 +1,6 @@
 #include "carat/kernels/tet_diamond_block.h"
 
-#include "carat/kernels/lanes.h"
+#include "carat/kernels/multiversion.h"
 
 namespace carat {
 namespace {

@@ -1,6 +1,6 @@
 #include "carat/kernels/tetrahedron_block.h"
 
-#include "carat/kernels/lanes.h"
+#include "carat/kernels/multiversion.h"
 
 namespace carat {
 namespace {
