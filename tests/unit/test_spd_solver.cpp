@@ -88,6 +88,36 @@ TEST(SpdSolver, auto_chooses_by_size_and_number_of_right_hand_sides) {
   }
 }
 
+/// Right-hand sides that advance together, of very different size and difficulty, have the
+/// solutions that they have alone, and the same bits for any number of threads.
+TEST(SpdSolver, advances_right_hand_sides_together) {
+  const PolygonMesh mesh = generate_mesh("plane-voronoi", {.level = 4});
+  const Discretization d = discretize(mesh);
+  ASSERT_GT(mesh.n_vertices(), 4096);
+  std::vector<bool> fixed(static_cast<std::size_t>(mesh.n_vertices()), false);
+  fixed[5] = true;
+  Matrix rhs = Matrix::Random(mesh.n_vertices(), 11);
+  rhs.col(3) = 1e-20 * rhs.col(2);
+  rhs.col(4).setZero();
+  rhs.col(5) = d.mass * Vector::Ones(mesh.n_vertices());
+  const auto solve = [&](const Matrix& b, int threads) {
+    const SpdSolver solver(
+        share(d.stiffness), fixed,
+        {.kind = SolverKind::Multigrid, .sparser = sparser_stiffness(mesh, d), .threads = threads});
+    SolveReport report;
+    const Matrix solution = solver.solve(b, &report);
+    EXPECT_LT(report.residual, 1e-10);
+    return solution;
+  };
+  const Matrix together = solve(rhs, 1);
+  for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
+    const Matrix alone = solve(rhs.col(k), 1);
+    EXPECT_LE((together.col(k) - alone).norm(), 1e-9 * alone.norm()) << k;
+  }
+  EXPECT_EQ(together.col(4).norm(), 0);
+  for (const int threads : {2, 3}) EXPECT_EQ(solve(rhs, threads), together);
+}
+
 TEST(SpdSolver, never_gives_a_wrong_answer) {
   SparseMatrix a = spd();
   a.coeffRef(3, 3) = -1;

@@ -23,16 +23,19 @@ struct IterationLimits {
   Index iterations = 500;
 };
 
-/// Solves A x = b for symmetric positive definite A.
+/// Solves A x = b for symmetric positive definite A and k right-hand sides. Every one has its own
+/// iteration; they advance together, so that the matrix and the preconditioner are read once.
+/// Results do not depend on the number of threads.
 ///
-/// \param multiply  y = A x; 0 in held-out rows
-/// \param b         (n), 0 in held-out rows
+/// \param multiply  y = A x for k vectors (n * k), the values of a row side by side; 0 in held-out
+///                  rows
+/// \param b         (n, k), 0 in held-out rows
 /// \param size      estimate of the norm of A, for the part of the residual that is rounding
-/// \return (n), 0 in held-out rows
+/// \return (n, k), 0 in held-out rows
 /// \throws SolverFailure  not within the limits: says the course of the residual; a direction of
 ///                        energy <= 0; values that are not finite
-Vector conjugate_gradients(const std::function<void(const Vector&, Vector&)>& multiply,
-                           const Preconditioner& preconditioner, const Vector& b, double size,
-                           const IterationLimits& limits, SolveReport& report);
+Matrix conjugate_gradients(const std::function<void(const Vector&, Vector&)>& multiply,
+                           const Preconditioner& preconditioner, const Matrix& b, double size,
+                           const IterationLimits& limits, SolveReport& report, int threads = 0);
 
 }  // namespace carat

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "carat/base/error.h"
-#include "carat/base/parallel.h"
 #include "carat/solve/incomplete_cholesky.h"
+#include "carat/solve/matrix_operator.h"
 #include "carat/solve/multigrid.h"
 
 namespace carat {
@@ -49,6 +49,12 @@ class FactorPreconditioner final : public Preconditioner {
   FactorPreconditioner(const SparseMatrix& matrix, const std::vector<bool>& fixed)
       : factor_(matrix, fixed) {}
   void apply(const Vector& r, Vector& z) const override { z = factor_.solve(r); }
+  void apply_block(const Vector& r, Vector& z, Index k) const override {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    z.resize(r.size());
+    Eigen::Map<Rows>(z.data(), r.size() / k, k) =
+        factor_.solve(Eigen::Map<const Rows>(r.data(), r.size() / k, k));
+  }
   std::int64_t nonzeros() const override { return factor_.info().nonzeros; }
 
  private:
@@ -102,48 +108,57 @@ SolverKind solver_kind(const std::string& name) {
 }
 
 struct SpdSolver::Impl {
-  std::shared_ptr<const SparseMatrix> matrix;
+  std::shared_ptr<const SymmetricOperator> a;
   std::vector<bool> fixed;
   SolverOptions options;
   SolverInfo info;
+  std::vector<Index> fixed_rows;
   std::unique_ptr<Preconditioner> preconditioner;
   mutable std::unique_ptr<Cholesky> direct;  // also what takes over
-  double matrix_norm = 0;                    // maximum norm
+  double norm = 0;                           // maximum norm over the free rows
 
   bool is_fixed(Index row) const { return !fixed.empty() && fixed[static_cast<std::size_t>(row)]; }
-  Index rows() const { return static_cast<Index>(matrix->rows()); }
+  Index rows() const { return a->rows(); }
 
   void choose() {
     info.kind = options.kind;
     if (options.kind != SolverKind::Auto) return;
     const bool volume = options.dimension == 3;
-    const Index n = rows() - static_cast<Index>(std::count(fixed.begin(), fixed.end(), true));
-    const double bytes =
-        factor_bytes(n, static_cast<double>(matrix->nonZeros()), options.dimension);
-    const double free = static_cast<double>(available_memory());
+    const Index n = rows() - static_cast<Index>(fixed_rows.size());
     const Index many = volume ? kManyInVolumes : kManyOnSurfaces;
-    const bool fits = free <= 0 || bytes < kMemoryShare * free;
     const std::string size =
         std::to_string(n) + (volume ? " unknowns of a volume" : " unknowns of a surface");
-    info.kind = SolverKind::Multigrid;
+    info.kind = SolverKind::Cholesky;
     if (n < kIterativeFrom) {
-      info.kind = SolverKind::Cholesky;
       info.reason = size + " are few";
-    } else if (!fits) {
+      return;
+    }
+    if (!a->assembled() && options.right_hand_sides < many) {
+      info.kind = SolverKind::Multigrid;
+      info.reason = size + " and few right-hand sides: no matrix and no factor of it";
+      return;
+    }
+    const double bytes =
+        factor_bytes(n, static_cast<double>(a->matrix()->nonZeros()), options.dimension);
+    const double free = static_cast<double>(available_memory());
+    if (free > 0 && bytes >= kMemoryShare * free) {
+      info.kind = SolverKind::Multigrid;
       info.reason = "a factor of " + size + " would take about " + gigabytes(bytes) + " of the " +
                     gigabytes(free) + " that are free";
     } else if (options.right_hand_sides >= many) {
-      info.kind = SolverKind::Cholesky;
       info.reason =
           std::to_string(options.right_hand_sides) + " right-hand sides pay for the factor";
     } else {
+      info.kind = SolverKind::Multigrid;
       info.reason = size + " and few right-hand sides: no factor of about " + gigabytes(bytes);
     }
   }
 
-  void factorise() const { direct = std::make_unique<Cholesky>(*matrix, fixed); }
+  void factorise() const { direct = std::make_unique<Cholesky>(*a->matrix(), fixed); }
 
   void prepare() {
+    for (Index row = 0; row < rows(); ++row)
+      if (is_fixed(row)) fixed_rows.push_back(row);
     choose();
     const auto start = std::chrono::steady_clock::now();
     if (info.kind != SolverKind::Cholesky) prepare_iteration();
@@ -153,13 +168,17 @@ struct SpdSolver::Impl {
       info.ordering = direct->info().ordering;
       info.nonzeros = direct->info().nonzeros;
     }
+    info.assembled = a->assembled() || info.kind == SolverKind::Cholesky;
+    info.operator_bytes = a->bytes();
     info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
   void prepare_iteration() {
     const bool from_sparser = build_from_sparser();
     if (!from_sparser) try {
+        const std::shared_ptr<const SparseMatrix> matrix = a->matrix();
         preconditioner = make_preconditioner(info.kind, *matrix, fixed);
+        if (!a->assembled()) a = std::make_shared<MatrixOperator>(matrix, options.threads);
       } catch (const SolverFailure& failure) {
         if (options.kind != SolverKind::Auto) throw;
         // The factorisation judges, and names the row.
@@ -167,26 +186,23 @@ struct SpdSolver::Impl {
         info.reason = "no multigrid: " + std::string(failure.what());
         return;
       }
-    info.method = std::string("conjugate gradients, ") + preconditioner_name(info.kind);
+    info.method = std::string(a->assembled() ? "" : "matrix-free ") + "conjugate gradients, " +
+                  preconditioner_name(info.kind);
     if (from_sparser && info.kind != SolverKind::SparserCholesky)
       info.method += " of the sparser matrix";
     info.nonzeros = preconditioner->nonzeros();
-    for (Index row = 0; row < rows(); ++row) {
-      if (is_fixed(row)) continue;
-      double sum = 0;
-      for (SparseMatrix::InnerIterator entry(*matrix, row); entry; ++entry)
-        sum += std::abs(entry.value());
-      matrix_norm = std::max(matrix_norm, sum);
-    }
+    Vector norms = a->row_norms();
+    for (const Index row : fixed_rows) norms[row] = 0;
+    if (norms.size() > 0) norm = norms.maxCoeff();
   }
 
   /// \return false: there is no sparser matrix, or it is not definite where the matrix may be
   bool build_from_sparser() {
     if (!options.sparser) return false;
     const SparseMatrix sparser = options.sparser();
-    if (sparser.rows() != matrix->rows() || sparser.cols() != matrix->cols())
+    if (sparser.rows() != rows() || sparser.cols() != rows())
       throw InvalidOption("the sparser matrix has " + std::to_string(sparser.rows()) +
-                          " rows, the matrix " + std::to_string(matrix->rows()));
+                          " rows, the matrix " + std::to_string(rows()));
     try {
       preconditioner = make_preconditioner(info.kind, sparser, fixed);
     } catch (const SolverFailure&) {
@@ -196,33 +212,22 @@ struct SpdSolver::Impl {
   }
 
   void multiply(const Vector& x, Vector& y) const {
-    const Index* const offsets = matrix->outerIndexPtr();
-    const Index* const columns = matrix->innerIndexPtr();
-    const double* const values = matrix->valuePtr();
-    parallel_blocks(rows(), options.threads, [&](int, Index begin, Index end) {
-      for (Index row = begin; row < end; ++row) {
-        double sum = 0;
-        if (!is_fixed(row))
-          for (Index k = offsets[row]; k < offsets[row + 1]; ++k) sum += values[k] * x[columns[k]];
-        y[row] = sum;
-      }
-    });
+    const Index k = static_cast<Index>(x.size() / std::max(1, rows()));
+    a->multiply(x.data(), y.data(), k);
+    for (const Index row : fixed_rows) y.segment(Eigen::Index{row} * k, k).setZero();
   }
 
-  Vector iterate(const Vector& rhs, SolveReport& report) const {
-    Vector b = rhs;
-    for (Index row = 0; row < rows(); ++row)
-      if (is_fixed(row)) b[row] = 0;
+  Matrix iterate(const Matrix& rhs, SolveReport& report) const {
+    Matrix b = rhs;
+    for (const Index row : fixed_rows) b.row(row).setZero();
     return conjugate_gradients([&](const Vector& x, Vector& y) { multiply(x, y); }, *preconditioner,
-                               b, matrix_norm, {}, report);
+                               b, norm, {}, report, options.threads);
   }
 
   Matrix solve(const Matrix& rhs, SolveReport& report) const {
     report.method = info.method;
     if (!direct) try {
-        Matrix result(rhs.rows(), rhs.cols());
-        for (Eigen::Index k = 0; k < rhs.cols(); ++k) result.col(k) = iterate(rhs.col(k), report);
-        return result;
+        return iterate(rhs, report);
       } catch (const SolverFailure&) {
         if (options.kind != SolverKind::Auto || !rhs.allFinite()) throw;
         report = {};
@@ -233,42 +238,50 @@ struct SpdSolver::Impl {
     Vector product(rhs.rows());
     for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
       multiply(result.col(k), product);
-      double error = 0, norm = 0;
+      double error = 0, size = 0;
       for (Index row = 0; row < rows(); ++row) {
         if (is_fixed(row)) continue;
         error += std::pow(rhs(row, k) - product[row], 2);
-        norm += std::pow(rhs(row, k), 2);
+        size += std::pow(rhs(row, k), 2);
       }
-      if (norm > 0) report.residual = std::max(report.residual, std::sqrt(error / norm));
+      if (size > 0) report.residual = std::max(report.residual, std::sqrt(error / size));
     }
     return result;
   }
 };
 
-SpdSolver::SpdSolver(std::shared_ptr<const SparseMatrix> matrix, std::vector<bool> fixed,
+SpdSolver::SpdSolver(std::shared_ptr<const SymmetricOperator> a, std::vector<bool> fixed,
                      const SolverOptions& options)
     : impl_(std::make_unique<Impl>()) {
-  if (matrix->rows() != matrix->cols())
-    throw InvalidOption("a matrix of " + std::to_string(matrix->rows()) + " rows and " +
-                        std::to_string(matrix->cols()) + " columns is not symmetric");
-  if (!fixed.empty() && fixed.size() != static_cast<std::size_t>(matrix->rows()))
-    throw InvalidOption(std::to_string(fixed.size()) + " flags for " +
-                        std::to_string(matrix->rows()) + " rows");
-  impl_->matrix = std::move(matrix);
+  if (!fixed.empty() && fixed.size() != static_cast<std::size_t>(a->rows()))
+    throw InvalidOption(std::to_string(fixed.size()) + " flags for " + std::to_string(a->rows()) +
+                        " rows");
+  impl_->a = std::move(a);
   impl_->fixed = std::move(fixed);
   impl_->options = options;
   impl_->prepare();
   impl_->options.sparser = nullptr;
 }
 
+SpdSolver::SpdSolver(std::shared_ptr<const SparseMatrix> matrix, std::vector<bool> fixed,
+                     const SolverOptions& options)
+    : SpdSolver(
+          [&]() -> std::shared_ptr<const SymmetricOperator> {
+            if (matrix->rows() != matrix->cols())
+              throw InvalidOption("a matrix of " + std::to_string(matrix->rows()) + " rows and " +
+                                  std::to_string(matrix->cols()) + " columns is not symmetric");
+            return std::make_shared<MatrixOperator>(matrix, options.threads);
+          }(),
+          std::move(fixed), options) {}
+
 SpdSolver::~SpdSolver() = default;
 SpdSolver::SpdSolver(SpdSolver&&) noexcept = default;
 SpdSolver& SpdSolver::operator=(SpdSolver&&) noexcept = default;
 
 Matrix SpdSolver::solve(const Matrix& rhs, SolveReport* report) const {
-  if (rhs.rows() != impl_->matrix->rows())
+  if (rhs.rows() != impl_->rows())
     throw InvalidOption("a right-hand side of " + std::to_string(rhs.rows()) + " rows for " +
-                        std::to_string(impl_->matrix->rows()) + " unknowns");
+                        std::to_string(impl_->rows()) + " unknowns");
   SolveReport own;
   Matrix result = impl_->solve(rhs, own);
   if (report) *report = own;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "carat/base/symmetric_operator.h"
 #include "carat/solve/cholesky.h"
 #include "carat/solve/conjugate_gradients.h"
 
@@ -33,29 +34,36 @@ struct SolverOptions {
   /// Makes a matrix of fewer entries that is spectrally equivalent, from which preconditioners are
   /// built. Empty: they are built from the matrix itself.
   std::function<SparseMatrix()> sparser{};
-  int threads = 0;  ///< of products with the matrix; 0: all the machine has
+  int threads = 0;  ///< of products and vectors; 0: all the machine has
 };
 
 /// What was chosen, and what it cost to set up.
 struct SolverInfo {
   SolverKind kind = SolverKind::Cholesky;
-  std::string method;         ///< e.g. "conjugate gradients, multigrid"
-  std::string reason;         ///< why; empty where the caller chose
-  std::string ordering;       ///< of a factorisation
-  std::int64_t nonzeros = 0;  ///< in the factor or preconditioner
-  double seconds = 0;         ///< to set it up
+  std::string method;              ///< e.g. "conjugate gradients, multigrid", "matrix-free ..."
+  std::string reason;              ///< why; empty where the caller chose
+  std::string ordering;            ///< of a factorisation
+  std::int64_t nonzeros = 0;       ///< in the factor or preconditioner
+  std::size_t operator_bytes = 0;  ///< of the matrix, or of what multiplies without it
+  bool assembled = true;           ///< the matrix was, or had to be
+  double seconds = 0;              ///< to set it up
 };
 
-/// Solves A x = b for many right-hand sides, by a factorisation or by conjugate gradients.
+/// Solves A x = b for many right-hand sides, by a factorisation or by conjugate gradients. These
+/// need no matrix where there is a sparser one to precondition with: then an operator that stores
+/// none is never assembled, unless a factorisation is chosen or has to take over.
 ///
 /// Rows can be held out ("fixed") as in Cholesky. Where Auto chose an iteration and it fails, a
 /// factorisation takes over. Solutions of an iteration have a residual of 1e-12 of the right-hand
 /// side or of its rounding, checked anew; none beyond 1e-10 is returned.
 class SpdSolver {
  public:
-  /// \param matrix  symmetric; shared, not copied
-  /// \param fixed   empty, or one flag a row: rows and columns to leave out
+  /// \param a      shared, not copied
+  /// \param fixed  empty, or one flag a row: rows and columns to leave out
   /// \throws SolverFailure  not positive definite, as far as the set-up sees
+  explicit SpdSolver(std::shared_ptr<const SymmetricOperator> a, std::vector<bool> fixed = {},
+                     const SolverOptions& options = {});
+  /// \param matrix  symmetric; shared, not copied
   explicit SpdSolver(std::shared_ptr<const SparseMatrix> matrix, std::vector<bool> fixed = {},
                      const SolverOptions& options = {});
   ~SpdSolver();
