@@ -9,6 +9,7 @@
 
 #include "carat/base/error.h"
 #include "carat/operators/registry.h"
+#include "carat/solve/matrix_operator.h"
 
 namespace carat {
 namespace {
@@ -19,6 +20,11 @@ constexpr double kSingular = 1e-11;
 
 // A right-hand side that misses balance by more than this is a mistake, not discretisation error.
 constexpr double kImbalanceLimit = 0.1;
+
+// Mean number of vertices of a face, a cell, from which on products are the faster way
+// (docs/performance.md).
+constexpr double kManyCorners = 3.5;
+constexpr double kManyCellCorners = 5;
 
 /// Estimate of the lowest eigenvalue over the free rows, by inverse iteration.
 double lowest_eigenvalue(const SpdSolver& solver, const std::vector<bool>& held) {
@@ -44,6 +50,23 @@ void append_zeros(BoundaryIntegrals& boundary, Index n) {
   boundary.robin.conservativeResize(n, n);
 }
 
+std::shared_ptr<const SymmetricOperator> as_operator(
+    const std::shared_ptr<const SymmetricOperator>& product, const SparseMatrix& matrix,
+    int threads) {
+  if (product) return product;
+  return std::make_shared<MatrixOperator>(std::make_shared<SparseMatrix>(matrix), threads);
+}
+
+/// \param many  elements have so many vertices that products beat the matrix
+template <class Entry>
+OperatorForm form(const Entry& entry, bool many, Index n_vertices, SolverOptions solver,
+                  int dimension) {
+  solver.dimension = dimension;
+  return entry.options.products && many && takes_iteration(solver, n_vertices)
+             ? OperatorForm::Products
+             : OperatorForm::Matrices;
+}
+
 SolverOptions settled(SolverOptions options, int dimension, std::function<SparseMatrix()> sparser) {
   options.dimension = dimension;
   options.sparser = std::move(sparser);
@@ -51,6 +74,19 @@ SolverOptions settled(SolverOptions options, int dimension, std::function<Sparse
 }
 
 }  // namespace
+
+OperatorForm poisson_form(const PolygonMesh& mesh, const std::string& operator_name,
+                          const SolverOptions& solver) {
+  return form(surface_operator(operator_name), mesh.n_corners() > kManyCorners * mesh.n_faces(),
+              mesh.n_vertices(), solver, 2);
+}
+
+OperatorForm poisson_form(const PolyhedralMesh& mesh, const std::string& operator_name,
+                          const SolverOptions& solver) {
+  return form(volume_operator(operator_name),
+              static_cast<double>(mesh.corner_cells().size()) > kManyCellCorners * mesh.n_cells(),
+              mesh.n_vertices(), solver, 3);
+}
 
 Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
                  const BoundaryConditions& conditions, const SolverOptions& solver)
@@ -64,7 +100,8 @@ Poisson::Poisson(const PolyhedralMesh& mesh, const Discretization& discretizatio
 
 Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
                  const BoundaryConditions& conditions, SolverOptions solver)
-    : mass_(discretization.mass), boundary_load_(std::move(boundary.load)) {
+    : mass_(as_operator(discretization.mass_product, discretization.mass, solver.threads)),
+      boundary_load_(std::move(boundary.load)) {
   if (discretization.n_vertices() != boundary_load_.size())
     throw InvalidOption("the discretization has " + std::to_string(discretization.n_vertices()) +
                         " vertices, the mesh " + std::to_string(boundary_load_.size()));
@@ -74,14 +111,13 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
     append_zeros(boundary, n);
     boundary_load_ = boundary.load;
   }
-  component_ = matrix_components(discretization.stiffness);
+  system_ = as_operator(discretization.stiffness_product, discretization.stiffness, solver.threads);
+  component_ = system_->components();
   const Index n_components =
       component_.empty() ? 0 : *std::max_element(component_.begin(), component_.end()) + 1;
   floating_.assign(static_cast<std::size_t>(n_components), true);
-  if (boundary.robin.nonZeros() == 0) {
-    system_ = std::make_shared<SparseMatrix>(discretization.stiffness);
-  } else {
-    system_ = std::make_shared<SparseMatrix>(discretization.stiffness + boundary.robin);
+  if (boundary.robin.nonZeros() > 0) {
+    system_ = system_->plus(boundary.robin);
     if (solver.sparser)
       solver.sparser = [own = std::move(solver.sparser), &boundary] {
         return SparseMatrix(own() + boundary.robin);
@@ -95,15 +131,20 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
 
   // A floating component is held at zero at its best determined vertex, and shifted afterwards.
   held_ = fixed_;
-  std::vector<Index> ground(floating_.size(), -1);
-  const Vector diagonal = system_->diagonal();
-  for (Index v = 0; v < n; ++v) {
-    const Index c = component_[v];
-    if (c >= 0 && floating_[c] && (ground[c] < 0 || diagonal[v] > diagonal[ground[c]]))
-      ground[c] = v;
+  if (any_floating()) {
+    std::vector<Index> ground(floating_.size(), -1);
+    const Vector diagonal = system_->diagonal();
+    for (Index v = 0; v < n; ++v) {
+      const Index c = component_[v];
+      if (c >= 0 && floating_[c] && (ground[c] < 0 || diagonal[v] > diagonal[ground[c]]))
+        ground[c] = v;
+    }
+    for (const Index v : ground)
+      if (v >= 0) held_[v] = true;
   }
-  for (const Index v : ground)
-    if (v >= 0) held_[v] = true;
+  const Vector row_norms = system_->row_norms();
+  for (Index v = 0; v < n; ++v)
+    if (!fixed_[v]) system_norm_ = std::max(system_norm_, row_norms[v]);
   const auto refuse_singular = [&] {
     throw SolverFailure("Poisson: with these boundary conditions the stiffness of the operator " +
                         discretization.name +
@@ -125,7 +166,8 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
   } catch (const SolverFailure&) {
     refuse_singular();
   }
-  if (lowest_eigenvalue(*solver_, held_) <= kSingular * diagonal.maxCoeff()) refuse_singular();
+  if (lowest_eigenvalue(*solver_, held_) <= kSingular * system_->diagonal().maxCoeff())
+    refuse_singular();
 }
 
 /// Unknowns on boundary faces and edges whose vertices all have Dirichlet data.
@@ -194,7 +236,7 @@ PoissonSolution Poisson::solve(const Vector& f) const {
   if (f.size() != system_->rows())
     throw InvalidOption(std::to_string(f.size()) + " values for " +
                         std::to_string(system_->rows()) + " unknowns");
-  return solve_integrated(mass_ * f);
+  return solve_integrated(*mass_ * f);
 }
 
 PoissonSolution Poisson::solve_integrated(const Vector& load) const {
@@ -207,7 +249,8 @@ PoissonSolution Poisson::solve_integrated(const Vector& load) const {
   Vector b = load + boundary_load_;
 
   const std::size_t n_components = floating_.size();
-  const Vector vertex_mass = mass_ * Vector::Ones(mass_.cols());
+  const Vector vertex_mass =
+      any_floating() ? *mass_ * Vector::Ones(b.size()) : Vector(Vector::Zero(b.size()));
   std::vector<double> sum(n_components, 0), total(n_components, 0), measure(n_components, 0);
   for (Index v = 0; v < b.size(); ++v)
     if (const Index c = component_[v]; c >= 0) {
@@ -245,17 +288,11 @@ PoissonSolution Poisson::solve_integrated(const Vector& load) const {
     if (const Index c = component_[v]; c >= 0 && floating_[c]) solution.values[v] -= mean[c];
 
   const Vector residual = *system_ * solution.values - b;
-  double worst = 0, row_norm = 0;
-  for (Index v = 0; v < b.size(); ++v) {
-    if (fixed_[v]) continue;
-    worst = std::max(worst, std::abs(residual[v]));
-    double row = 0;
-    for (SparseMatrix::InnerIterator entry(*system_, v); entry; ++entry)
-      row += std::abs(entry.value());
-    row_norm = std::max(row_norm, row);
-  }
+  double worst = 0;
+  for (Index v = 0; v < b.size(); ++v)
+    if (!fixed_[v]) worst = std::max(worst, std::abs(residual[v]));
   const double scale =
-      row_norm * solution.values.lpNorm<Eigen::Infinity>() + b.lpNorm<Eigen::Infinity>();
+      system_norm_ * solution.values.lpNorm<Eigen::Infinity>() + b.lpNorm<Eigen::Infinity>();
   solution.relative_residual = scale > 0 ? worst / scale : 0;
   return solution;
 }

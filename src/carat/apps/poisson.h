@@ -1,7 +1,9 @@
 #pragma once
 // Poisson's equation with mixed boundary conditions, on surfaces and in volumes.
 
+#include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "carat/apps/boundary_conditions.h"
@@ -24,13 +26,22 @@ struct PoissonSolution {
   SolveReport solve{};
 };
 
+/// In which form Poisson solves fastest with an operator: products where they are faster than the
+/// matrices (polygons and polyhedra of many vertices) and the solver needs no matrix.
+OperatorForm poisson_form(const PolygonMesh& mesh, const std::string& operator_name,
+                          const SolverOptions& solver = {});
+OperatorForm poisson_form(const PolyhedralMesh& mesh, const std::string& operator_name,
+                          const SolverOptions& solver = {});
+
 /// Solves -div(K grad u) = f for any number of right-hand sides.
 ///
 /// K is part of the discretization: DiscretizationOptions::coefficient, and in volumes also
 /// cell_coefficient for scalars or symmetric tensors a cell.
 ///
 /// Small systems are factorised, large ones solved by conjugate gradients preconditioned through
-/// sparser_stiffness(): see SolverOptions. With unknowns beyond the vertices: always factorised.
+/// sparser_stiffness(): see SolverOptions. These need no matrix of the operator itself; see
+/// poisson_form() and DiscretizationOptions::form. With unknowns beyond the vertices: always
+/// factorised.
 class Poisson {
  public:
   /// \throws InvalidOption  vertex or side out of range, a side that is not on the boundary, a
@@ -55,11 +66,15 @@ class Poisson {
  private:
   Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
           const BoundaryConditions& conditions, SolverOptions solver);
+  bool any_floating() const {
+    return std::find(floating_.begin(), floating_.end(), true) != floating_.end();
+  }
   void fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions& conditions);
   void fix_boundary_unknowns(const ExtraUnknowns& extra, const BoundaryConditions& conditions);
 
-  std::shared_ptr<const SparseMatrix> system_;  // stiffness plus Robin's matrix
-  SparseMatrix mass_;
+  std::shared_ptr<const SymmetricOperator> system_;  // stiffness plus Robin's matrix
+  double system_norm_ = 0;                           // maximum norm over the rows solved for
+  std::shared_ptr<const SymmetricOperator> mass_;
   Vector boundary_load_;     // Neumann and Robin
   std::vector<bool> fixed_;  // rows not solved for
   Vector fixed_values_;

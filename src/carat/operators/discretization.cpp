@@ -71,6 +71,13 @@ std::vector<bool> normalise(Vector& values, Index size, Index length) {
 
 }  // namespace
 
+SparseMatrix Discretization::laplacian() const {
+  if (stiffness_product)
+    throw InvalidOption("the operator " + name +
+                        " was asked for as a product and has no matrix: OperatorForm::Matrices");
+  return -stiffness;
+}
+
 SparseMatrix Discretization::divergence() const {
   require_gradient(*this, gradient.rows());
   if (is_one_form()) {

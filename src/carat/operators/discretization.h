@@ -8,6 +8,7 @@
 #include <string>
 
 #include "carat/base/diagnostics.h"
+#include "carat/base/symmetric_operator.h"
 #include "carat/base/types.h"
 #include "carat/kernels/virtual_vertex.h"
 #include "carat/mesh/polygon_mesh.h"
@@ -27,6 +28,14 @@ enum class DiscretizationParts {
   Matrices,  ///< stiffness and mass
   Gradient,  ///< also the gradient and its sample measures; the divergence follows from them
   Frames,    ///< also what turns gradients into 3-D vectors
+};
+
+/// What stiffness and mass are given as.
+enum class OperatorForm {
+  Matrices,
+  /// Products with them, which need less memory and are sooner made than the matrices; faster
+  /// products where elements have many vertices. The matrices stay empty.
+  Products,
 };
 
 /// Which mass matrix. An operator has one or several of them.
@@ -65,6 +74,7 @@ struct DiscretizationOptions {
   /// positive definite tensors xx, yy, zz, xy, yz, xz. Empty: K = 1.
   Matrix cell_coefficient{};
   DiscretizationParts parts = DiscretizationParts::Gradient;
+  OperatorForm form = OperatorForm::Matrices;
   int threads = 0;  ///< 0: all the machine has. No result depends on it.
 };
 
@@ -118,6 +128,8 @@ struct Discretization {
   SparseMatrix stiffness;  ///< (N, N), N = V + extra unknowns  [1 on surfaces, length in volumes]
   /// (N, N), sum = area or volume of the virtual refinement  [length^2, length^3]
   SparseMatrix mass;
+  /// The same operators where they were asked for as products; else null.
+  std::shared_ptr<const SymmetricOperator> stiffness_product, mass_product;
   ExtraUnknowns extra;  ///< none for most operators
   /// (dimension * samples, N); component k of sample s in row dimension * s + k.  [1/length]
   /// One-forms: (rows, N), differences.  [1]
@@ -133,7 +145,9 @@ struct Discretization {
   GradientFrames frames;  ///< empty unless asked for
   Diagnostics diagnostics;
 
-  Index n_unknowns() const { return static_cast<Index>(stiffness.rows()); }
+  Index n_unknowns() const {
+    return stiffness_product ? stiffness_product->rows() : static_cast<Index>(stiffness.rows());
+  }
   Index n_vertices() const { return n_unknowns() - extra.size(); }
   Index n_samples() const { return static_cast<Index>(sample_measure.size()); }
   bool is_one_form() const { return gradient_dimension == 1; }
@@ -144,7 +158,12 @@ struct Discretization {
   }
 
   /// L = -S.
-  SparseMatrix laplacian() const { return -stiffness; }
+  /// \throws InvalidOption  there is no matrix: OperatorForm::Products
+  SparseMatrix laplacian() const;
+  /// M x in either form. \param x  one value an unknown
+  Vector apply_mass(const Vector& x) const {
+    return mass_product ? *mass_product * x : Vector(mass * x);
+  }
   /// D = -G^T M_s, (N, rows of the gradient).  [BBA21 (20)]
   /// \throws InvalidOption  the gradient was not asked for
   SparseMatrix divergence() const;
@@ -165,7 +184,7 @@ struct Discretization {
   /// \return empty, or why element_directions() cannot be had
   std::string lacks_element_directions() const;
   /// Integrated row sums of the mass.
-  Vector lumped_mass() const { return mass * Vector::Ones(mass.cols()); }
+  Vector lumped_mass() const { return apply_mass(Vector::Ones(n_unknowns())); }
 
   /// Mean of sample vectors by area or volume over each element, as 3-D vectors (n_elements, 3).
   /// \param vectors     one value a row of the gradient, e.g. gradient * u

@@ -72,6 +72,9 @@ DiscretizationOptions settle_options(const std::string& name, const OperatorOpti
                         " has no unknowns on boundary faces; leave out boundary_unknowns");
   if (taken.boundary_unknowns && !options.boundary_unknowns)
     options.boundary_unknowns = taken.boundary_unknowns;
+  if (!taken.products && options.form == OperatorForm::Products)
+    throw InvalidOption("the operator " + name +
+                        " is given by matrices only; ask for OperatorForm::Matrices");
   if (!taken.tensor_coefficient && options.cell_coefficient.cols() == 6)
     throw InvalidOption("the operator " + name +
                         " takes scalars a cell as coefficient, not tensors");

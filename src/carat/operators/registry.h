@@ -42,6 +42,7 @@ struct OperatorOptionSet {
   std::optional<bool> boundary_unknowns{};  ///< its default
   std::optional<double> theta{};            ///< its default
   std::optional<double> tau{};              ///< of the moment-exact mass, its default
+  bool products = false;                    ///< OperatorForm::Products
   bool tensor_coefficient = true;           ///< symmetric tensors in cell_coefficient
   bool stiffness_alone = false;             ///< DiscretizationParts::Stiffness saves something
 };

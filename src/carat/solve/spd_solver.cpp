@@ -107,6 +107,12 @@ SolverKind solver_kind(const std::string& name) {
   throw InvalidOption("solver '" + name + "' is not known; known are: " + known);
 }
 
+bool takes_iteration(const SolverOptions& options, Index n_unknowns) {
+  if (options.kind != SolverKind::Auto) return options.kind != SolverKind::Cholesky;
+  return n_unknowns >= kIterativeFrom &&
+         options.right_hand_sides < (options.dimension == 3 ? kManyInVolumes : kManyOnSurfaces);
+}
+
 struct SpdSolver::Impl {
   std::shared_ptr<const SymmetricOperator> a;
   std::vector<bool> fixed;
@@ -125,7 +131,6 @@ struct SpdSolver::Impl {
     if (options.kind != SolverKind::Auto) return;
     const bool volume = options.dimension == 3;
     const Index n = rows() - static_cast<Index>(fixed_rows.size());
-    const Index many = volume ? kManyInVolumes : kManyOnSurfaces;
     const std::string size =
         std::to_string(n) + (volume ? " unknowns of a volume" : " unknowns of a surface");
     info.kind = SolverKind::Cholesky;
@@ -133,7 +138,8 @@ struct SpdSolver::Impl {
       info.reason = size + " are few";
       return;
     }
-    if (!a->assembled() && options.right_hand_sides < many) {
+    const bool few_sides = takes_iteration(options, n);
+    if (!a->assembled() && few_sides) {
       info.kind = SolverKind::Multigrid;
       info.reason = size + " and few right-hand sides: no matrix and no factor of it";
       return;
@@ -145,7 +151,7 @@ struct SpdSolver::Impl {
       info.kind = SolverKind::Multigrid;
       info.reason = "a factor of " + size + " would take about " + gigabytes(bytes) + " of the " +
                     gigabytes(free) + " that are free";
-    } else if (options.right_hand_sides >= many) {
+    } else if (!few_sides) {
       info.reason =
           std::to_string(options.right_hand_sides) + " right-hand sides pay for the factor";
     } else {

@@ -37,6 +37,10 @@ struct SolverOptions {
   int threads = 0;  ///< of products and vectors; 0: all the machine has
 };
 
+/// Whether the solver of so many unknowns is an iteration, lack of memory for a factor and failures
+/// aside.
+bool takes_iteration(const SolverOptions& options, Index n_unknowns);
+
 /// What was chosen, and what it cost to set up.
 struct SolverInfo {
   SolverKind kind = SolverKind::Cholesky;

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "carat/assembly/diamond_assembly.h"
+#include "carat/assembly/diamond_product.h"
 #include "carat/base/error.h"
 #include "carat/base/parallel.h"
 #include "carat/kernels/diamond_2d.h"
@@ -84,6 +85,7 @@ class DiamondAssembly final : public Assembly {
   Index n_rows_ = theta_ < 1 ? 3 : 2;  // of the gradient, a diamond
   bool lumped_ = options_.mass == MassKind::Lumped;
   SurfaceIncidence incidence_;
+  std::shared_ptr<const ElementStructure> structure_;  // only of products
   FaceRings rings_;
   Array<Index> edge_diamonds_;  // empty: diamond e belongs to edge e
   Array<Term> terms_;
@@ -97,10 +99,14 @@ DiamondAssembly<Term>::DiamondAssembly(const char* name, const PolygonMesh& mesh
                                        const DiscretizationOptions& options)
     : mesh_(mesh), options_(options), incidence_(surface_incidence(mesh_, options.threads)) {
   result_.name = name;
-  rings_ = face_rings(incidence_, options_.threads);
-  DiamondPatterns patterns = diamond_patterns(incidence_, rings_, options_.threads);
-  result_.stiffness = std::move(patterns.stiffness);
-  result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
+  if (options_.form == OperatorForm::Products) {
+    structure_ = diamond_structure(incidence_);
+  } else {
+    rings_ = face_rings(incidence_, options_.threads);
+    DiamondPatterns patterns = diamond_patterns(incidence_, rings_, options_.threads);
+    result_.stiffness = std::move(patterns.stiffness);
+    result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
+  }
   find_diamonds();
   result_.sample_measure.resize(n_diamonds());
   if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
@@ -413,8 +419,16 @@ void DiamondAssembly<Term>::update(const Points& points) {
   order_nonmanifold_faces(points);
   compute_terms(points);
   // S = -L and M = P^T M^ P   [BBA21 (21), (22)]
-  assemble_diamonds(result_.stiffness, result_.mass, lumped_, incidence_, rings_, terms_,
-                    edge_diamonds_, virtuals_.weights, options_.threads, workspace_);
+  if (structure_) {
+    DiamondProducts products =
+        diamond_products(structure_, lumped_, incidence_, terms_, edge_diamonds_, virtuals_.weights,
+                         options_.threads);
+    result_.stiffness_product = std::move(products.stiffness);
+    result_.mass_product = std::move(products.mass);
+  } else {
+    assemble_diamonds(result_.stiffness, result_.mass, lumped_, incidence_, rings_, terms_,
+                      edge_diamonds_, virtuals_.weights, options_.threads, workspace_);
+  }
   if (options_.parts != DiscretizationParts::Matrices) assemble_gradient(points);
   if (options_.parts == DiscretizationParts::Frames) collect_frames(points);
   report();
@@ -439,7 +453,8 @@ extern const SurfaceOperator diamond_surface_operator = {
     {},
     {.masses = {MassKind::Full, MassKind::MomentExact, MassKind::Lumped},
      .virtual_vertex = true,
-     .tau = 0.75},
+     .tau = 0.75,
+     .products = true},
     {"S = G^T M_d G with one gradient per edge: linear on the diamond of the edge's two ends and "
      "the "
      "virtual vertices of its two faces, the two halves unfolded into one plane; virtual vertices "

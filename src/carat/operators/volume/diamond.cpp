@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carat/assembly/diamond_product.h"
 #include "carat/assembly/pattern.h"
 #include "carat/assembly/volume_diamond_assembly.h"
 #include "carat/base/error.h"
@@ -74,6 +75,8 @@ class VolumeDiamondAssembly final : public Assembly {
   Index n_rows_ = theta_ < 1 ? 4 : 3;  // of the gradient, a diamond
   bool lumped_ = options_.mass == MassKind::Lumped;
   VolumeIncidence incidence_;
+  std::shared_ptr<const ElementStructure> structure_;  // only of products, like the pattern
+  SparseMatrix interface_pattern_;
   CellRings rings_;
   VirtualCells virtuals_;
   VolumeDiamondWorkspace workspace_;
@@ -89,20 +92,29 @@ VolumeDiamondAssembly::VolumeDiamondAssembly(const char* name, const PolyhedralM
     : mesh_(mesh), options_(options), incidence_(volume_incidence(mesh_)) {
   check_cell_coefficient(options_, mesh_.n_cells());
   result_.name = name;
-  tets_ = plain() && !options_.coefficient && options_.cell_coefficient.size() == 0 &&
+  const bool products = options_.form == OperatorForm::Products;
+  tets_ = !products && plain() && !options_.coefficient && options_.cell_coefficient.size() == 0 &&
           mesh_.n_cells() > 0 && all_tetrahedra(incidence_);
   VolumeDiamondPatterns patterns;
   if (tets_) {
     tet_topology_ = tet_topology(incidence_, options_.threads);
     patterns = diamond_patterns(incidence_, tet_topology_, options_.threads);
   } else {
-    rings_ = cell_rings(incidence_, options_.threads);
-    patterns = diamond_patterns(incidence_, rings_, options_.threads);
+    if (products) {
+      structure_ = diamond_structure(incidence_);
+      interface_pattern_ = interface_pattern(incidence_, mesh_.face_mesh().vertex_corners(),
+                                             mesh_.face_mesh().corner_faces(), options_.threads);
+    } else {
+      rings_ = cell_rings(incidence_, options_.threads);
+      patterns = diamond_patterns(incidence_, rings_, options_.threads);
+    }
     mesh_.face_mesh().vertex_corners();  // built on first use: here, not in the numeric phase
     mesh_.face_mesh().corner_faces();
   }
-  result_.stiffness = std::move(patterns.stiffness);
-  result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
+  if (!products) {
+    result_.stiffness = std::move(patterns.stiffness);
+    result_.mass = lumped_ ? diagonal_pattern(mesh_.n_vertices()) : std::move(patterns.mass);
+  }
   result_.sample_measure.setZero(n_diamonds());  // of faces without cells, for good
   if (options_.parts >= DiscretizationParts::Gradient) make_gradient_pattern();
 }
@@ -454,6 +466,15 @@ void VolumeDiamondAssembly::update(const Points& points) {
                           tet_diamonds_, options_.threads);
   } else {
     compute_faces();
+  }
+  if (structure_) {
+    DiamondProducts products = diamond_products(
+        structure_, interface_pattern_, lumped_, incidence_, mesh_.face_mesh().vertex_corners(),
+        mesh_.face_mesh().corner_faces(), virtuals_.faces.weights, virtuals_.cell_weights,
+        workspace_, options_.threads);
+    result_.stiffness_product = std::move(products.stiffness);
+    result_.mass_product = std::move(products.mass);
+  } else if (!tets_) {
     assemble_volume_diamonds(result_.stiffness, result_.mass, lumped_, incidence_, rings_,
                              mesh_.face_mesh().vertex_corners(), mesh_.face_mesh().corner_faces(),
                              virtuals_.faces.weights, virtuals_.cell_weights, options_.threads,
@@ -478,7 +499,8 @@ extern const VolumeOperator diamond_volume_operator = {
     {},
     {.masses = {MassKind::Full, MassKind::MomentExact, MassKind::Lumped},
      .virtual_vertex = true,
-     .tau = 1.0},
+     .tau = 1.0,
+     .products = true},
     {"S = G^T M_d G with one gradient for every edge of every face: linear on the edge, the face's "
      "virtual vertex and those of the two cells, which are affine combinations of their vertices. "
      "Mass "
