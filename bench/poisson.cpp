@@ -5,7 +5,9 @@
 //
 //   carat_bench_poisson [--benchmark_filter=REGEX] [--benchmark_...]
 //
-// Names are OPERATOR/SOLVER/MESH/VERTICES/threads:N. CARAT_BENCH_LARGEST leaves out larger meshes.
+// Names are OPERATOR/SOLVER/MESH/VERTICES/threads:N. The solver auto takes products where
+// poisson_form() does, the solver assembled always has the matrix. CARAT_BENCH_LARGEST leaves out
+// larger meshes.
 
 #include "carat/apps/poisson.h"
 
@@ -38,6 +40,7 @@ struct Case {
 struct Outcome {
   double assembly = 0, setup = 0, solution = 0;  ///< [s]
   double residual = 0, megabytes = 0, iterations = 0, entries = 0, vertices = 0;
+  double operator_megabytes = 0;
   double total() const { return assembly + setup + solution; }
 };
 
@@ -68,11 +71,14 @@ Outcome solve(const Case& wanted, const Mesh& whole) {
   DiscretizationOptions options;
   options.parts = DiscretizationParts::Matrices;
   options.threads = wanted.threads;
+  const bool assembled = wanted.solver == "assembled";
+  const SolverOptions solver{.kind = assembled ? SolverKind::Auto : solver_kind(wanted.solver),
+                             .threads = wanted.threads};
+  if (!assembled) options.form = poisson_form(mesh, wanted.op, solver);
   const Discretization d = discretize(mesh, wanted.op, options);
   outcome.assembly = now() - start;
   start = now();
-  const Poisson poisson(mesh, d, conditions,
-                        {.kind = solver_kind(wanted.solver), .threads = wanted.threads});
+  const Poisson poisson(mesh, d, conditions, solver);
   outcome.setup = now() - start;
   start = now();
   const PoissonSolution solution = poisson.solve(Vector::Ones(mesh.n_vertices()));
@@ -81,6 +87,7 @@ Outcome solve(const Case& wanted, const Mesh& whole) {
   outcome.residual = solution.solve.residual;
   outcome.iterations = solution.solve.iterations;
   outcome.entries = static_cast<double>(d.stiffness.nonZeros());
+  outcome.operator_megabytes = 1e-6 * static_cast<double>(poisson.solver().operator_bytes);
   outcome.vertices = mesh.n_vertices();
   return outcome;
 }
@@ -114,6 +121,7 @@ void measure(benchmark::State& state, const Case& wanted) {
     state.counters["residual"] = outcome.residual;
     state.counters["peak_MB"] = outcome.megabytes;
     state.counters["nnz"] = outcome.entries;
+    state.counters["operator_MB"] = outcome.operator_megabytes;
     state.counters["vertices"] = outcome.vertices;
     if (wanted.threads != 1) continue;
     Outcome& known = best[{wanted.op, wanted.solver, wanted.mesh, wanted.size}];
@@ -123,8 +131,9 @@ void measure(benchmark::State& state, const Case& wanted) {
 
 void print_ratios() {
   std::printf("\nOne thread. Seconds and memory of diamond; others relative to it.\n");
-  std::printf("%-10s %9s %9s %6s %9s | %8s %10s | %11s %11s\n", "mesh", "vertices", "seconds",
-              "iter.", "peak MB", "/bunge", "stabilized", "CHOLMOD(S)/", "memory");
+  std::printf("%-10s %9s %9s %6s %9s | %8s %10s | %9s %7s | %11s %7s\n", "mesh", "vertices",
+              "seconds", "iter.", "peak MB", "/bunge", "stabilized", "assembled", "memory",
+              "CHOLMOD(S)/", "memory");
   for (const auto& [key, diamond] : best) {
     const auto& [op, solver, mesh, size] = key;
     if (op != "diamond" || solver != "auto") continue;
@@ -138,12 +147,17 @@ void print_ratios() {
       }();
     };
     std::printf(
-        "%-10s %9.0f %9.3f %6.0f %9.0f | %8s %10s | %11s %11s\n", mesh.c_str(), diamond.vertices,
-        diamond.total(), diamond.iterations, diamond.megabytes,
+        "%-10s %9.0f %9.3f %6.0f %9.0f | %8s %10s | %9s %7s | %11s %7s\n", mesh.c_str(),
+        diamond.vertices, diamond.total(), diamond.iterations, diamond.megabytes,
         ratio("bunge", "auto", [&](const Outcome& o) { return diamond.total() / o.total(); })
             .c_str(),
         ratio("stabilized_diamond", "auto",
               [&](const Outcome& o) { return o.total() / diamond.total(); })
+            .c_str(),
+        ratio("diamond", "assembled", [&](const Outcome& o) { return o.total() / diamond.total(); })
+            .c_str(),
+        ratio("diamond", "assembled",
+              [&](const Outcome& o) { return o.megabytes / diamond.megabytes; })
             .c_str(),
         ratio("diamond", "cholesky", [&](const Outcome& o) { return o.total() / diamond.total(); })
             .c_str(),
@@ -179,6 +193,7 @@ int main(int argc, char** argv) {
     for (const carat::Index size : sizes) {
       for (const char* const op : {"diamond", "stabilized_diamond", "bunge"})
         for (const int threads : {1, 2}) add({op, "auto", mesh, size, threads});
+      for (const int threads : {1, 2}) add({"diamond", "assembled", mesh, size, threads});
       if (size <= largest_factor) add({"diamond", "cholesky", mesh, size, 1});
     }
   };

@@ -163,7 +163,8 @@ DegenerateElement as_option(const DegenerateElement& error) {
 
 template <class Mesh>
 Discretization discretize_mesh(Session& session, const Mesh& mesh, const OperatorOptions& options,
-                               DiscretizationParts parts, const Coefficient& coefficient) {
+                               DiscretizationParts parts, const Coefficient& coefficient,
+                               const SolverOptions* poisson) {
   const OperatorChoice choice = default_choice(mesh, options.application);
   const OperatorEntry<Mesh>& entry =
       choose_operator(mesh, options.name.empty() ? choice.name : options.name);
@@ -174,6 +175,7 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
     if (!options.theta) library_options.theta = choice.theta;
   }
   library_options.parts = parts;
+  if (poisson) library_options.form = poisson_form(mesh, entry.name, *poisson);
   library_options.coefficient = coefficient.function;
   library_options.cell_coefficient = coefficient.of_cells;
   library_options.threads = session.threads();
@@ -189,8 +191,9 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
 
   session.report()["options"] = to_json(entry.name, entry.options, entry.settle(library_options));
   Json& nnz = session.report()["nnz"];
-  nnz["stiffness"] = discretization.stiffness.nonZeros();
-  nnz["mass"] = discretization.mass.nonZeros();
+  const bool assembled = !discretization.stiffness_product;
+  nnz["stiffness"] = assembled ? Json(discretization.stiffness.nonZeros()) : Json();
+  nnz["mass"] = assembled ? Json(discretization.mass.nonZeros()) : Json();
   if (discretization.extra.size() > 0)
     session.report()["sizes"]["unknowns"] = discretization.n_unknowns();
   if (discretization.gradient_dimension > 0)
@@ -198,8 +201,12 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
       nnz[name] = discretization.gradient.nonZeros();
   session.report()["sizes"]["samples"] = discretization.n_samples();
   session.report()["sizes"]["gradient_dimension"] = discretization.gradient_dimension;
-  session.say("operator " + discretization.name + ": " + count(discretization.n_unknowns(), "row") +
-              ", " + std::to_string(discretization.stiffness.nonZeros()) + " stiffness entries");
+  session.say(
+      "operator " + discretization.name + ": " + count(discretization.n_unknowns(), "row") +
+      (assembled
+           ? ", " + std::to_string(discretization.stiffness.nonZeros()) + " stiffness entries"
+           : ", no matrix: products with " +
+                 std::to_string(discretization.stiffness_product->bytes() / 1000000) + " MB"));
   session.add_diagnostics(discretization.diagnostics);
   return discretization;
 }
@@ -281,14 +288,15 @@ void declare_operator_options(CLI::App& app, OperatorOptions& options,
 }
 
 Discretization discretize(Session& session, const PolygonMesh& mesh, const OperatorOptions& options,
-                          DiscretizationParts parts, const Coefficient& coefficient) {
-  return discretize_mesh(session, mesh, options, parts, coefficient);
+                          DiscretizationParts parts, const Coefficient& coefficient,
+                          const SolverOptions* poisson) {
+  return discretize_mesh(session, mesh, options, parts, coefficient, poisson);
 }
 
 Discretization discretize(Session& session, const PolyhedralMesh& mesh,
                           const OperatorOptions& options, DiscretizationParts parts,
-                          const Coefficient& coefficient) {
-  return discretize_mesh(session, mesh, options, parts, coefficient);
+                          const Coefficient& coefficient, const SolverOptions* poisson) {
+  return discretize_mesh(session, mesh, options, parts, coefficient, poisson);
 }
 
 }  // namespace carat::cli

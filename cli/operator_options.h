@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "carat/apps/poisson.h"
 #include "carat/apps/recommended.h"
 #include "carat/operators/registry.h"
 #include "cli/session.h"
@@ -38,12 +39,15 @@ struct Coefficient {
 };
 
 /// Runs both phases and reports sizes, entries and diagnostics.
+/// \param poisson  if given: the operators in the form in which this solver takes them
 /// \throws InvalidOption      the operator is not one of this kind of mesh
 /// \throws DegenerateElement  under --strict
 Discretization discretize(Session& session, const PolygonMesh& mesh, const OperatorOptions& options,
-                          DiscretizationParts parts, const Coefficient& coefficient = {});
+                          DiscretizationParts parts, const Coefficient& coefficient = {},
+                          const SolverOptions* poisson = nullptr);
 Discretization discretize(Session& session, const PolyhedralMesh& mesh,
                           const OperatorOptions& options, DiscretizationParts parts,
-                          const Coefficient& coefficient = {});
+                          const Coefficient& coefficient = {},
+                          const SolverOptions* poisson = nullptr);
 
 }  // namespace carat::cli

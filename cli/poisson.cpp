@@ -60,7 +60,9 @@ Vector at_unknowns(const Expression& expression, const Points& vertices, const D
 template <class Mesh>
 void remove_floating_means(const Mesh& mesh, const Discretization& discretization,
                            const BoundaryConditions& conditions, Vector& reference) {
-  const std::vector<Index> component = matrix_components(discretization.stiffness);
+  const std::vector<Index> component = discretization.stiffness_product
+                                           ? discretization.stiffness_product->components()
+                                           : matrix_components(discretization.stiffness);
   const Vector mass = discretization.lumped_mass();
   const Index n = component.empty() ? 0 : *std::max_element(component.begin(), component.end()) + 1;
   std::vector<bool> anchored(static_cast<std::size_t>(n), false);
@@ -96,11 +98,13 @@ void compare(Session& session, const Mesh& mesh, const Discretization& discretiz
   // Errors are those at the vertices, also where there are more unknowns.
   const Index n = mesh.n_vertices();
   reference.conservativeResize(n);
-  const SparseMatrix vertex_mass = discretization.mass.topLeftCorner(n, n);
   // Vertices of no element take no part.
   if (const Finding* const unused = discretization.diagnostics.find("unreferenced_vertices"))
     for (const Index v : unused->elements) reference[v] = u[v];
-  const ErrorNorms errors = error_norms(vertex_mass, u, reference);
+  const ErrorNorms errors =
+      discretization.mass_product
+          ? error_norms(*discretization.mass_product, u, reference)
+          : error_norms(SparseMatrix(discretization.mass.topLeftCorner(n, n)), u, reference);
   session.report()["errors"] = {{"rmse", errors.rmse}, {"l2", errors.l2}, {"max", errors.max}};
   session.say("error against --exact: rmse " + text(errors.rmse) + ", L2 " + text(errors.l2) +
               ", max " + text(errors.max));
@@ -121,6 +125,8 @@ void report_solution(Session& session, const SolverInfo& info, const PoissonSolu
                       {"reason", info.reason},
                       {"ordering", info.ordering},
                       {"factor_nnz", info.nonzeros},
+                      {"assembled", info.assembled},
+                      {"operator_bytes", info.operator_bytes},
                       {"iterations", how.iterations},
                       {"residual", how.residual}};
   session.say("solver: " + how.method +
@@ -158,14 +164,13 @@ void solve(Session& session, const Options& options, const Given& given, Data& d
   if (given.coefficient) coefficient.function = *given.coefficient;
   if (!options.coefficient_field.empty())
     coefficient.of_cells = cell_coefficient(data, options.coefficient_field);
-  const Discretization discretization =
-      discretize(session, data.mesh, options.discretization,
-                 writes ? DiscretizationParts::Frames : DiscretizationParts::Matrices, coefficient);
+  const SolverOptions solver{.kind = solver_kind(options.solver), .threads = session.threads()};
+  const Discretization discretization = discretize(
+      session, data.mesh, options.discretization,
+      writes ? DiscretizationParts::Frames : DiscretizationParts::Matrices, coefficient, &solver);
   const Vector f = at_unknowns(given.rhs, data.mesh.points(), discretization);
-  const Poisson poisson = session.phase("factor", [&] {
-    return Poisson(data.mesh, discretization, conditions,
-                   {.kind = solver_kind(options.solver), .threads = session.threads()});
-  });
+  const Poisson poisson = session.phase(
+      "factor", [&] { return Poisson(data.mesh, discretization, conditions, solver); });
   const PoissonSolution solution = session.phase("solve", [&] { return poisson.solve(f); });
 
   report_conditions(session, conditions, words(data.mesh).side);
@@ -234,8 +239,10 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "nothing is written");
   app.add_option("--solver", options->solver,
                  "auto: a Cholesky factorisation of small systems, conjugate\n"
-                 "gradients with multigrid for large ones. Others: cholesky,\n"
-                 "multigrid, incomplete-cholesky, sparser-cholesky")
+                 "gradients with multigrid for large ones, which need no\n"
+                 "matrix of a diamond on polygons and polyhedra. Others:\n"
+                 "cholesky, multigrid, incomplete-cholesky,\n"
+                 "sparser-cholesky")
       ->type_name("NAME");
   declare_operator_options(app, options->discretization, Application::Poisson);
   return [options](Session& session) { run(session, *options); };

@@ -57,8 +57,7 @@ void expect_products(const Mesh& mesh, const std::string& name, DiscretizationOp
   EXPECT_LE((d.lumped_mass() - matrices.lumped_mass()).norm(),
             1e-13 * matrices.lumped_mass().norm());
   // M + t S, and its sum with a matrix.
-  const auto& s = dynamic_cast<const ElementProduct&>(*d.stiffness_product);
-  const auto& m = dynamic_cast<const ElementProduct&>(*d.mass_product);
+  const ElementProduct &s = *d.stiffness_product, &m = *d.mass_product;
   const SparseMatrix expected = matrices.mass + 0.3 * matrices.stiffness;
   expect_equal(*ElementProduct::sum(m, 0.3, s), expected);
   expect_equal(*ElementProduct::sum(s, 2, m), matrices.stiffness + 2 * matrices.mass);
@@ -139,6 +138,71 @@ TEST(ElementProduct, has_the_components_of_the_matrix) {
   };
   for (const NamedMesh& named : unusual_meshes()) expect_same(named.mesh);
   for (const NamedVolume& named : unusual_volumes()) expect_same(named.mesh);
+}
+
+template <class Mesh>
+void expect_same_solution(const Mesh& mesh, const char* name,
+                          const BoundaryConditions& conditions) {
+  ASSERT_GE(mesh.n_vertices(), 10000);
+  ASSERT_EQ(poisson_form(mesh, name), OperatorForm::Products);
+  const Discretization matrices = discretize(mesh, name);
+  const Discretization d = discretize(mesh, name, {.form = OperatorForm::Products});
+  Vector f = Vector::Random(mesh.n_vertices());
+  f.array() -= f.dot(d.lumped_mass()) / d.lumped_mass().sum();
+  const Poisson with_matrix(mesh, matrices, conditions), without(mesh, d, conditions);
+  const PoissonSolution expected = with_matrix.solve(f), solution = without.solve(f);
+  EXPECT_LE((solution.values - expected.values).norm(), 1e-10 * expected.values.norm());
+  EXPECT_EQ(solution.floating_components, expected.floating_components);
+  EXPECT_EQ(solution.solve.method.rfind("matrix-free conjugate gradients, multigrid", 0), 0U)
+      << solution.solve.method;
+  EXPECT_NE(without.solver().reason.find("no matrix"), std::string::npos);
+  EXPECT_FALSE(without.solver().assembled);
+  EXPECT_TRUE(with_matrix.solver().assembled);
+  EXPECT_LT(without.solver().operator_bytes, with_matrix.solver().operator_bytes);
+  EXPECT_LT(solution.relative_residual, 1e-12);
+  EXPECT_LT(solution.solve.residual, 1e-11);
+  // A factorisation has the matrix made.
+  const Poisson direct(mesh, d, conditions, {.kind = SolverKind::Cholesky});
+  EXPECT_LE((direct.solve(f).values - expected.values).norm(), 1e-9 * expected.values.norm());
+  EXPECT_TRUE(direct.solver().assembled);
+}
+
+TEST(ElementProduct, solves_as_the_matrix_does) {
+  const PolygonMesh surface = generate_mesh("plane-voronoi", {.level = 5});
+  BoundaryConditions conditions;
+  expect_same_solution(surface, "diamond", conditions);  // up to a constant
+  const EdgeTopology& edges = surface.edges();
+  for (Index e = 0; e < edges.size(); ++e) {
+    if (edges.corners.size(e) != 1) continue;
+    const Vec3 x = surface.point(edges.vertices[e][0]);
+    if (x.x() < 1e-9) {
+      conditions.robin_sides.push_back(e);
+      conditions.robin_alpha.push_back(1 + x.y());
+      conditions.robin_g.push_back(0.5);
+    } else {
+      conditions.dirichlet_vertices.push_back(edges.vertices[e][1]);
+      conditions.dirichlet_values.push_back(1);
+    }
+  }
+  expect_same_solution(surface, "stabilized_diamond", conditions);
+  const PolyhedralMesh volume = generate_volume("cube-truncated", {.level = 3});
+  conditions = {};
+  conditions.dirichlet_vertices = {0, 5, 77};
+  conditions.dirichlet_values = {1, 2, 3};
+  expect_same_solution(volume, "diamond", conditions);
+}
+
+TEST(ElementProduct, is_chosen_where_it_is_faster) {
+  const PolygonMesh hexagons = generate_mesh("plane-voronoi", {.level = 5});
+  EXPECT_EQ(poisson_form(hexagons, "diamond", {.kind = SolverKind::Cholesky}),
+            OperatorForm::Matrices);
+  EXPECT_EQ(poisson_form(hexagons, "diamond", {.right_hand_sides = 100}), OperatorForm::Matrices);
+  EXPECT_EQ(poisson_form(hexagons, "bunge"), OperatorForm::Matrices);
+  EXPECT_EQ(poisson_form(cube(), "diamond"), OperatorForm::Matrices);
+  EXPECT_EQ(poisson_form(generate_mesh("plane-triangles", {.level = 5}), "diamond"),
+            OperatorForm::Matrices);
+  EXPECT_EQ(poisson_form(generate_volume("cube-tets", {.level = 3}), "diamond"),
+            OperatorForm::Matrices);
 }
 
 TEST(ElementProduct, is_only_had_where_it_is_offered) {

@@ -297,22 +297,40 @@ PoissonSolution Poisson::solve_integrated(const Vector& load) const {
   return solution;
 }
 
-ErrorNorms error_norms(const SparseMatrix& mass, const Vector& u, const Vector& reference,
-                       bool remove_mean) {
-  if (u.size() != reference.size() || u.size() != mass.rows())
+namespace {
+
+/// \param multiply  the mass times a vector
+template <class Multiply>
+ErrorNorms norms_of(const Multiply& multiply, Eigen::Index rows, const Vector& u,
+                    const Vector& reference, bool remove_mean) {
+  if (u.size() != reference.size() || u.size() != rows)
     throw InvalidOption("error norms of " + std::to_string(u.size()) + " and " +
                         std::to_string(reference.size()) + " values");
   Vector e = u - reference;
   if (remove_mean && e.size() > 0) {
-    const Vector weights = mass * Vector::Ones(mass.cols());
+    const Vector weights = multiply(Vector(Vector::Ones(rows)));
     e.array() -= weights.dot(e) / weights.sum();
   }
   ErrorNorms norms;
   if (e.size() == 0) return norms;
   norms.rmse = std::sqrt(e.squaredNorm() / static_cast<double>(e.size()));
-  norms.l2 = std::sqrt(std::max(0.0, e.dot(mass * e)));
+  norms.l2 = std::sqrt(std::max(0.0, e.dot(multiply(e))));
   norms.max = e.lpNorm<Eigen::Infinity>();
   return norms;
+}
+
+}  // namespace
+
+ErrorNorms error_norms(const SparseMatrix& mass, const Vector& u, const Vector& reference,
+                       bool remove_mean) {
+  return norms_of([&](const Vector& x) { return Vector(mass * x); }, mass.rows(), u, reference,
+                  remove_mean);
+}
+
+ErrorNorms error_norms(const SymmetricOperator& mass, const Vector& u, const Vector& reference,
+                       bool remove_mean) {
+  return norms_of([&](const Vector& x) { return mass * x; }, mass.rows(), u, reference,
+                  remove_mean);
 }
 
 }  // namespace carat

@@ -94,5 +94,7 @@ struct ErrorNorms {
 /// \param remove_mean  compare up to a constant: both sides lose their mean by mass
 ErrorNorms error_norms(const SparseMatrix& mass, const Vector& u, const Vector& reference,
                        bool remove_mean = false);
+ErrorNorms error_norms(const SymmetricOperator& mass, const Vector& u, const Vector& reference,
+                       bool remove_mean = false);
 
 }  // namespace carat

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "carat/assembly/element_product.h"
 #include "carat/base/diagnostics.h"
-#include "carat/base/symmetric_operator.h"
 #include "carat/base/types.h"
 #include "carat/kernels/virtual_vertex.h"
 #include "carat/mesh/polygon_mesh.h"
@@ -129,7 +129,7 @@ struct Discretization {
   /// (N, N), sum = area or volume of the virtual refinement  [length^2, length^3]
   SparseMatrix mass;
   /// The same operators where they were asked for as products; else null.
-  std::shared_ptr<const SymmetricOperator> stiffness_product, mass_product;
+  std::shared_ptr<const ElementProduct> stiffness_product, mass_product;
   ExtraUnknowns extra;  ///< none for most operators
   /// (dimension * samples, N); component k of sample s in row dimension * s + k.  [1/length]
   /// One-forms: (rows, N), differences.  [1]
