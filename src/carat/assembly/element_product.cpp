@@ -17,6 +17,15 @@ Array<double> combined(const Array<double>& a, double t, const Array<double>& b)
   return sum;
 }
 
+/// Asks for what will be read soon: in short loops the processor itself looks less far ahead. The
+/// distance is the best of 512 to 4096 bytes on hexagons that costs hexahedra nothing.
+constexpr std::ptrdiff_t kAhead = 1024;
+inline void fetch([[maybe_unused]] const void* data) {
+#if defined(__GNUC__)
+  __builtin_prefetch(static_cast<const char*>(data) + kAhead);
+#endif
+}
+
 /// Sets of rows.
 class Components {
  public:
@@ -95,17 +104,19 @@ double* ElementProduct::Scratch::reserve(std::size_t size) {
 }
 
 /// \tparam kAbsolute  of the absolute values of all factors
-template <bool kAbsolute, Index kWidth>
+/// \tparam kWidth     vectors that are multiplied
+/// \tparam kStride    values a row of x and y; 0: stride_of_x
+template <bool kAbsolute, Index kWidth, Index kStride>
 void ElementProduct::gather(const double* x, double* y, Index stride_of_x) const {
   using Values = Eigen::Array<double, kWidth, 1>;
   using Loaded = Eigen::Map<const Values>;
   using Stored = Eigen::Map<Values>;
   const ElementStructure& structure = *structure_;
   const ElementTerms& terms = *terms_;
-  const auto stride = static_cast<std::size_t>(stride_of_x);
+  const auto stride = static_cast<std::size_t>(kStride > 0 ? kStride : stride_of_x);
   const auto value = [](double v) { return kAbsolute ? std::abs(v) : v; };
   const auto of_row = [&](Index row) { return x + stride * static_cast<std::size_t>(row); };
-  // Of every element: P x, then the factor of its weights.
+  // Of every element: the factor of its weights, then P x.
   Scratch scratch(*this);
   double* const elements = scratch.reserve(2 * kWidth * terms.diagonal.size());
   const auto of_element = [&](Index e) {
@@ -120,13 +131,14 @@ void ElementProduct::gather(const double* x, double* y, Index stride_of_x) const
         Values mean = Values::Zero(), coupled = Values::Zero();
         const Index last = structure.vertices.end(e);
         for (Index c = structure.vertices.begin(e); c < last; ++c) {
+          fetch(corners + c);
           const Loaded at(of_row(vertices[c]));
           mean += value(corners[c].weight) * at;
           coupled += value(corners[c].own) * at;
         }
-        Stored(of_element(e)) = mean;
         if (!own) coupled.setZero();
-        Stored(of_element(e) + kWidth) = coupled + value(terms.diagonal[e]) * mean;
+        Stored(of_element(e)) = coupled + value(terms.diagonal[e]) * mean;
+        Stored(of_element(e) + kWidth) = mean;
       }
     });
   }
@@ -138,11 +150,11 @@ void ElementProduct::gather(const double* x, double* y, Index stride_of_x) const
         Values sum = Values::Zero();
         const Index last = structure.across.end(e);
         for (Index k = structure.across.begin(e); k < last; ++k)
-          sum += value(across[k]) * Loaded(of_element(others[k]));
+          sum += value(across[k]) * Loaded(of_element(others[k]) + kWidth);
         if constexpr (kAbsolute)
-          Stored(of_element(e) + kWidth) += sum;
+          Stored(of_element(e)) += sum;
         else
-          Stored(of_element(e) + kWidth) -= sum;
+          Stored(of_element(e)) -= sum;
       }
     });
   }
@@ -155,14 +167,17 @@ void ElementProduct::gather(const double* x, double* y, Index stride_of_x) const
     const CornerTerms::Corner* const corners = corners_->by_vertex.data();
     for (Index row = begin; row < end; ++row) {
       Values sum = Values::Zero(), coupled = Values::Zero();
-      for (Index k = offsets[row]; k < offsets[row + 1]; ++k)
+      for (Index k = offsets[row]; k < offsets[row + 1]; ++k) {
+        fetch(values + k);
         sum += value(values[k]) * Loaded(of_row(columns[k]));
+      }
       if (with_elements) {
         const Index last = structure.elements.end(row);
         for (Index k = structure.elements.begin(row); k < last; ++k) {
+          fetch(corners + k);
           const double* const at = of_element(of_vertex[k]);
-          sum += value(corners[k].weight) * Loaded(at + kWidth);
-          if (own) coupled += value(corners[k].own) * Loaded(at);
+          sum += value(corners[k].weight) * Loaded(at);
+          if (own) coupled += value(corners[k].own) * Loaded(at + kWidth);
         }
       }
       Stored(y + stride * static_cast<std::size_t>(row)) = sum + coupled;
@@ -172,14 +187,17 @@ void ElementProduct::gather(const double* x, double* y, Index stride_of_x) const
 
 void ElementProduct::multiply(const double* x, double* y, Index k) const {
   for_column_groups(k, [&](auto width, Index first) {
-    gather<false, decltype(width)::value>(x + first, y + first, k);
+    if (k == 1)
+      gather<false, 1, 1>(x, y, k);
+    else
+      gather<false, decltype(width)::value, 0>(x + first, y + first, k);
   });
 }
 
 Vector ElementProduct::row_norms() const {
   const Vector ones = Vector::Ones(rows());
   Vector norms(rows());
-  gather<true, 1>(ones.data(), norms.data(), 1);
+  gather<true, 1, 1>(ones.data(), norms.data(), 1);
   return norms;
 }
 

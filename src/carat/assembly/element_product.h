@@ -94,7 +94,7 @@ class ElementProduct final : public SymmetricOperator {
   };
   bool has_elements() const { return !terms_->diagonal.empty(); }
   bool has_own() const { return terms_->couples; }
-  template <bool kAbsolute, Index kWidth>
+  template <bool kAbsolute, Index kWidth, Index kStride>
   void gather(const double* x, double* y, Index stride) const;
 
   std::shared_ptr<const ElementStructure> structure_;

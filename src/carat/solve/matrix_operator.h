@@ -24,6 +24,9 @@ class MatrixOperator final : public SymmetricOperator {
   std::size_t bytes() const override;
 
  private:
+  template <Index kWidth, Index kStride>
+  void gather(const double* x, double* y, Index stride) const;
+
   std::shared_ptr<const SparseMatrix> matrix_;
   int threads_;
 };
