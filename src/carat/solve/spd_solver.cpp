@@ -73,10 +73,10 @@ const char* preconditioner_name(SolverKind kind) {
 }
 
 std::unique_ptr<Preconditioner> make_preconditioner(SolverKind kind, const SparseMatrix& matrix,
-                                                    const std::vector<bool>& fixed) {
+                                                    const std::vector<bool>& fixed, int threads) {
   switch (kind) {
     case SolverKind::Multigrid:
-      return std::make_unique<Multigrid>(matrix, fixed);
+      return std::make_unique<Multigrid>(matrix, fixed, threads);
     case SolverKind::IncompleteCholesky:
       return std::make_unique<IncompleteCholesky>(matrix, fixed);
     default:
@@ -183,7 +183,7 @@ struct SpdSolver::Impl {
     const bool from_sparser = build_from_sparser();
     if (!from_sparser) try {
         const std::shared_ptr<const SparseMatrix> matrix = a->matrix();
-        preconditioner = make_preconditioner(info.kind, *matrix, fixed);
+        preconditioner = make_preconditioner(info.kind, *matrix, fixed, options.threads);
         if (!a->assembled()) a = std::make_shared<MatrixOperator>(matrix, options.threads);
       } catch (const SolverFailure& failure) {
         if (options.kind != SolverKind::Auto) throw;
@@ -210,7 +210,7 @@ struct SpdSolver::Impl {
       throw InvalidOption("the sparser matrix has " + std::to_string(sparser.rows()) +
                           " rows, the matrix " + std::to_string(rows()));
     try {
-      preconditioner = make_preconditioner(info.kind, sparser, fixed);
+      preconditioner = make_preconditioner(info.kind, sparser, fixed, options.threads);
     } catch (const SolverFailure&) {
       return false;
     }

@@ -440,7 +440,7 @@ std::unique_ptr<Assembly> make_diamond(const char* name, const PolygonMesh& mesh
                                        const DiscretizationOptions& options) {
   if (options.theta.value_or(1.0) < 1 || options.mass == MassKind::MomentExact)
     return std::make_unique<DiamondAssembly<GeneralDiamondTerm>>(name, mesh, options);
-  if (options.parts == DiscretizationParts::Matrices)
+  if (options.parts == DiscretizationParts::Matrices && options.form == OperatorForm::Matrices)
     if (std::unique_ptr<Assembly> triangles = make_triangle_diamond(name, mesh, options))
       return triangles;
   return std::make_unique<DiamondAssembly<DiamondTerm>>(name, mesh, options);
