@@ -8,6 +8,7 @@
 #include "carat/mesh/statistics.h"
 #include "carat/report/franke.h"
 #include "carat/solve/cholesky.h"
+#include "carat/solve/semidefinite_solver.h"
 #include "cli/experiments/series.h"
 
 namespace carat::cli {

@@ -18,4 +18,5 @@
 #include "carat/operators/registry.h"
 #include "carat/solve/cholesky.h"
 #include "carat/solve/eigen_solver.h"
+#include "carat/solve/semidefinite_solver.h"
 #include "carat/solve/spd_solver.h"

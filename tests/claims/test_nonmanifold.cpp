@@ -1,6 +1,6 @@
 // Edges of more than two faces, and other connectivity that is no surface in the narrow sense.
 
-#include "carat/solve/cholesky.h"
+#include "carat/solve/semidefinite_solver.h"
 #include "support/claim_cases.h"
 #include "support/dense_diamond.h"
 #include "support/measures.h"

@@ -3,6 +3,7 @@
 // Tolerances are multiples of the rounding unit times the row length or condition that they sum.
 
 #include "carat/solve/cholesky.h"
+#include "carat/solve/semidefinite_solver.h"
 #include "support/claim_cases.h"
 #include "support/measures.h"
 

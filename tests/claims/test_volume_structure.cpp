@@ -6,6 +6,7 @@
 
 #include "carat/base/error.h"
 #include "carat/solve/cholesky.h"
+#include "carat/solve/semidefinite_solver.h"
 #include "support/volume_claim_cases.h"
 #include "support/volume_measures.h"
 

@@ -73,25 +73,6 @@ TEST(Cholesky, wrong_sizes_and_values_are_refused) {
   EXPECT_THROW(solver.solve(rhs), SolverFailure);
 }
 
-TEST(SemidefiniteSolver, works_in_the_complement_of_constants_of_each_component) {
-  const PolygonMesh mesh = two_components_with_loose_vertices();
-  const Discretization d = discretize(mesh);
-  const SemidefiniteSolver solver(d.stiffness);
-  EXPECT_EQ(solver.n_components(), 2);
-  EXPECT_EQ(solver.components(), (std::vector<Index>{0, 0, 0, -1, -1, 1, 1, 1, 1}));
-  Vector rhs = Vector::Zero(9);
-  rhs << 1, -2, 1, 5, 5, 3, -1, -1, -1;
-  const Vector u = solver.solve(rhs);
-  rhs[3] = rhs[4] = 0;
-  EXPECT_LT((d.stiffness * u - rhs).cwiseAbs().maxCoeff(), 1e-13);
-  EXPECT_NEAR(u.head(3).sum(), 0, 1e-14);
-  EXPECT_NEAR(u.tail(4).sum(), 0, 1e-14);
-  EXPECT_EQ(u[3], 0);
-  EXPECT_NEAR(solver.imbalance(rhs), 0, 1e-15);
-  rhs[5] += 6;
-  EXPECT_NEAR(solver.imbalance(rhs), 6.0 / 12, 1e-15);
-}
-
 TEST(MatrixComponents, explicit_zeros_do_not_connect) {
   SparseMatrix a(3, 3);
   a.insert(0, 0) = 1;

@@ -137,5 +137,90 @@ TEST(HeatGeodesics, mean_edge_length_shortens_the_time_step) {
   EXPECT_LT(HeatGeodesics(mesh, d, {.length = TimeStepLength::MeanEdge}).time_step(), longest);
 }
 
+/// Sources of all kinds on the first vertices of a mesh.
+std::vector<std::vector<GeodesicSource>> source_sets(Index n, Index stride) {
+  std::vector<std::vector<GeodesicSource>> sets;
+  for (Index k = 0; k < n; ++k) sets.push_back({{stride * k}});
+  sets[2].push_back({stride * 7, 3.0});
+  sets[5] = sets[2];
+  return sets;
+}
+
+void expect_same(const GeodesicDistance& a, const GeodesicDistance& b, double tolerance) {
+  EXPECT_EQ(a.unreachable_vertices, b.unreachable_vertices);
+  EXPECT_EQ(a.unresolved_samples, b.unresolved_samples);
+  ASSERT_EQ(a.values.size(), b.values.size());
+  for (Index v = 0; v < a.values.size(); ++v) {
+    if (std::isinf(a.values[v])) {
+      EXPECT_EQ(a.values[v], b.values[v]);
+    } else {
+      EXPECT_NEAR(a.values[v], b.values[v], tolerance);
+    }
+  }
+}
+
+TEST(HeatGeodesics, many_source_sets_give_what_each_gives_by_itself) {
+  const PolygonMesh mesh = generate_mesh("sphere-concave", {.level = 1});
+  for (const HeatDirections directions : {HeatDirections::Samples, HeatDirections::Elements})
+    for (const SolverKind kind : {SolverKind::Auto, SolverKind::Multigrid}) {
+      const HeatGeodesics geodesics(
+          mesh, discretize(mesh, "stabilized_diamond", {.parts = DiscretizationParts::Frames}),
+          {.directions = directions, .solver = {.kind = kind, .threads = 2}});
+      const auto sets = source_sets(21, 3);
+      Index next = 0;
+      geodesics.distances(sets, [&](Index set, GeodesicDistance&& distance) {
+        EXPECT_EQ(set, next++);
+        expect_same(distance, geodesics.distance(sets[set]), 1e-9);
+        return true;
+      });
+      EXPECT_EQ(next, 21);
+    }
+}
+
+TEST(HeatGeodesics, many_source_sets_reach_their_own_components) {
+  const PolygonMesh mesh = two_components_with_loose_vertices();
+  const HeatGeodesics geodesics(mesh, discretize(mesh));
+  std::vector<std::vector<GeodesicSource>> sets{{{0}}, {{6}}, {{1}, {8, 2.0}}};
+  geodesics.distances(sets, [&](Index set, GeodesicDistance&& distance) {
+    expect_same(distance, geodesics.distance(sets[set]), 1e-12);
+    EXPECT_EQ(distance.unreachable_vertices.size(), set == 0 ? 6u : set == 1 ? 5u : 2u);
+    return true;
+  });
+  sets[1].clear();
+  const auto none = [](Index, GeodesicDistance&&) {
+    ADD_FAILURE() << "solved before the sources are checked";
+    return true;
+  };
+  EXPECT_THROW(geodesics.distances(sets, none), InvalidOption);
+  sets[1] = {{3}};
+  try {
+    geodesics.distances(sets, none);
+    ADD_FAILURE();
+  } catch (const InvalidOption& error) {
+    EXPECT_NE(std::string(error.what()).find("source set 1: source vertex 3"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(HeatGeodesics, many_source_sets_do_not_depend_on_threads_and_can_be_ended) {
+  const PolygonMesh mesh = quad_grid(25, 25);
+  const auto sets = source_sets(30, 11);
+  std::vector<Vector> one;
+  for (const int threads : {1, 2, 3}) {
+    const HeatGeodesics geodesics(mesh, discretize(mesh), {.solver = {.threads = threads}});
+    geodesics.distances(sets, [&](Index set, GeodesicDistance&& distance) {
+      if (threads == 1) {
+        one.push_back(distance.values);
+      } else {
+        EXPECT_EQ(distance.values, one[static_cast<std::size_t>(set)]);
+      }
+      return true;
+    });
+    Index calls = 0;
+    geodesics.distances(sets, [&](Index, GeodesicDistance&&) { return ++calls < 10; });
+    EXPECT_EQ(calls, 10);
+  }
+}
+
 }  // namespace
 }  // namespace carat::test

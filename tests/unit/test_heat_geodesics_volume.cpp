@@ -63,5 +63,24 @@ TEST(HeatGeodesicsVolume, other_parts_and_loose_vertices_are_unreachable) {
   EXPECT_GT(distance.values[5], 0);
 }
 
+TEST(HeatGeodesicsVolume, iterations_give_what_factorisations_give) {
+  for (const char* family : {"cube-hexahedra", "ball-tets-adaptive", "cube-voronoi"}) {
+    SCOPED_TRACE(family);
+    const PolyhedralMesh mesh = generate_volume(family, {.level = 1, .jitter = 0.1});
+    const Discretization d = discretize(mesh);
+    const HeatGeodesics by_factor(mesh, d, {.solver = {.kind = SolverKind::Cholesky}});
+    const HeatGeodesics by_iteration(mesh, d, {.solver = {.kind = SolverKind::Multigrid}});
+    EXPECT_EQ(by_factor.heat_info().kind, SolverKind::Cholesky);
+    EXPECT_NE(by_iteration.heat_info().method, by_factor.heat_info().method);
+    const std::vector<std::vector<GeodesicSource>> sets{{{0}}, {{17}}, {{3}, {40, 2.0}}};
+    by_iteration.distances(sets, [&](Index set, GeodesicDistance&& distance) {
+      const GeodesicDistance expected = by_factor.distance(sets[set]);
+      EXPECT_EQ(distance.unresolved_samples, expected.unresolved_samples);
+      EXPECT_LT((distance.values - expected.values).cwiseAbs().maxCoeff(), 1e-8);
+      return true;
+    });
+  }
+}
+
 }  // namespace
 }  // namespace carat::test

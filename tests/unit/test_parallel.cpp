@@ -38,5 +38,27 @@ TEST(Parallel, requested_threads_win) {
   EXPECT_GE(resolve_threads(-2), 1);
 }
 
+TEST(Parallel, tasks_are_done_once_each) {
+  for (const Index n : {0, 1, 7, 100})
+    for (const int threads : {1, 2, 5}) {
+      std::vector<int> visits(static_cast<std::size_t>(n), 0);
+      parallel_tasks(n, threads, [&](Index task) { ++visits[task]; });
+      EXPECT_EQ(visits, std::vector<int>(static_cast<std::size_t>(n), 1));
+    }
+}
+
+TEST(Parallel, the_exception_of_the_lowest_task_arrives) {
+  for (const int threads : {1, 4}) {
+    try {
+      parallel_tasks(20, threads, [](Index task) {
+        if (task > 4) throw std::runtime_error(std::to_string(task));
+      });
+      FAIL() << "nothing was thrown";
+    } catch (const std::runtime_error& e) {
+      EXPECT_STREQ(e.what(), "5");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace carat

@@ -1,11 +1,14 @@
 #pragma once
 // Geodesic distance by the heat method: Crane, Weischedel, Wardetzky 2013.
 
+#include <functional>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "carat/mesh/polyhedral_mesh.h"
 #include "carat/operators/discretization.h"
-#include "carat/solve/cholesky.h"
+#include "carat/solve/spd_solver.h"
 
 namespace carat {
 
@@ -22,6 +25,9 @@ struct HeatGeodesicsOptions {
   double t_coef = 1;
   TimeStepLength length = TimeStepLength::MaxEdge;
   HeatDirections directions = HeatDirections::Samples;
+  /// kind, right_hand_sides (how many source sets are expected) and threads are read; the rest
+  /// follows from the mesh. The kind is that of Poisson's equation: see heat_info().
+  SolverOptions solver{};
 };
 
 /// A point to measure from.
@@ -39,7 +45,7 @@ struct GeodesicDistance {
   Index unresolved_samples = 0;
 };
 
-/// The heat method on one mesh; both factorisations are kept for any number of source sets.
+/// The heat method on one mesh; what solves its two systems is kept for any number of source sets.
 ///
 /// (M + t S) u = sources; X = -grad u / |grad u| a sample; S phi = G^T M_s X in the complement of
 /// constants of each component.
@@ -53,23 +59,35 @@ class HeatGeodesics {
                 const HeatGeodesicsOptions& options = {});
   HeatGeodesics(const PolyhedralMesh& mesh, Discretization discretization,
                 const HeatGeodesicsOptions& options = {});
+  ~HeatGeodesics();
+  HeatGeodesics(HeatGeodesics&&) noexcept;
+  HeatGeodesics& operator=(HeatGeodesics&&) noexcept;
 
   /// \throws InvalidOption  no source, a vertex that does not exist or has no element, weight <= 0
   GeodesicDistance distance(const std::vector<GeodesicSource>& sources) const;
   GeodesicDistance distance(Index source) const { return distance({GeodesicSource{source}}); }
 
-  const Discretization& discretization() const { return discretization_; }
-  double time_step() const { return time_step_; }  ///< t  [length^2]
-  const FactorInfo& heat_info() const { return heat_->info(); }
-  const FactorInfo& poisson_info() const { return poisson_->info(); }
+  /// Gets the number of a source set and its distances; false: no more are wanted.
+  using TakeDistance = std::function<bool(Index set, GeodesicDistance&& distance)>;
+  /// The distances from each of many source sets by itself, solved for several at a time: each as
+  /// from distance(), to rounding. They are handed over in order, on the calling thread, and not
+  /// kept: memory is that of a few sets a thread.
+  /// \throws InvalidOption  as distance(), before any work; names the set
+  void distances(std::span<const std::vector<GeodesicSource>> sets, const TakeDistance& take) const;
+
+  const Discretization& discretization() const;
+  double time_step() const;  ///< t  [length^2]
+  /// What diffuses the heat. Distances follow from its decay over hundreds of orders of magnitude,
+  /// so it is a factorisation, or where that is too large or Poisson's equation in a volume needs
+  /// none, solve_componentwise().
+  const SolverInfo& heat_info() const;
+  const SolverInfo& poisson_info() const;
 
  private:
-  Discretization discretization_;
-  double time_step_ = 0;
-  HeatDirections directions_;
-  Vector heat_diagonal_;
-  std::unique_ptr<Cholesky> heat_;
-  std::unique_ptr<SemidefiniteSolver> poisson_;
+  struct Impl;
+  HeatGeodesics(const PolygonMesh& mesh, Discretization&& discretization,
+                const HeatGeodesicsOptions& options, SolverOptions solver);
+  std::unique_ptr<const Impl> impl_;
 };
 
 }  // namespace carat

@@ -1,6 +1,7 @@
 #include "carat/base/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <thread>
 
@@ -35,6 +36,25 @@ void parallel_blocks(Index n, int threads, const std::function<void(int, Index, 
   for (int block = 1; block < blocks; ++block) workers.emplace_back(guarded, block);
   guarded(0);
   workers.clear();
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+}
+
+void parallel_tasks(Index n, int threads, const std::function<void(Index task)>& body) {
+  std::vector<std::exception_ptr> failures(static_cast<std::size_t>(n));
+  std::atomic<Index> next{0};
+  const auto work = [&] {
+    for (Index task = next++; task < n; task = next++) try {
+        body(task);
+      } catch (...) {
+        failures[static_cast<std::size_t>(task)] = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> workers;
+    for (int k = 1; k < std::min<int>(resolve_threads(threads), n); ++k) workers.emplace_back(work);
+    work();
+  }
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
 }

@@ -16,4 +16,8 @@ int resolve_threads(int requested);
 void parallel_blocks(Index n, int threads,
                      const std::function<void(int block, Index begin, Index end)>& body);
 
+/// Calls body(task) once for every task in [0, n), each on one of `threads` threads: for few tasks
+/// that are long. The exception of the lowest task, if any, is rethrown after all have ended.
+void parallel_tasks(Index n, int threads, const std::function<void(Index task)>& body);
+
 }  // namespace carat

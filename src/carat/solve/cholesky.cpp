@@ -75,17 +75,18 @@ struct Cholesky::Impl {
     return a;
   }
 
-  void check(const char* what) const {
-    if (common.status >= CHOLMOD_OK && common.status != CHOLMOD_NOT_POSDEF) return;
-    if (common.status == CHOLMOD_OUT_OF_MEMORY)
+  void check(const char* what) const { check(what, common); }
+  void check(const char* what, const cholmod_common& state) const {
+    if (state.status >= CHOLMOD_OK && state.status != CHOLMOD_NOT_POSDEF) return;
+    if (state.status == CHOLMOD_OUT_OF_MEMORY)
       throw SolverFailure(std::string(what) + " of " + std::to_string(reduction.size()) +
                           " unknowns: not enough memory for the factor");
-    if (common.status == CHOLMOD_TOO_LARGE)
+    if (state.status == CHOLMOD_TOO_LARGE)
       throw SolverFailure(std::string(what) + " of " + std::to_string(reduction.size()) +
                           " unknowns: the factor is too large for 32-bit indices");
-    if (common.status < CHOLMOD_OK)
+    if (state.status < CHOLMOD_OK)
       throw SolverFailure(std::string(what) + " failed (CHOLMOD status " +
-                          std::to_string(common.status) + ")");
+                          std::to_string(state.status) + ")");
   }
 
   void analyse() {
@@ -114,7 +115,15 @@ struct Cholesky::Impl {
   }
 
   void back_solve(Matrix& reduced) const {
-    cholmod_common& mutable_common = const_cast<cholmod_common&>(common);
+    // One of its own, so that several threads can solve at once.
+    struct Common : cholmod_common {
+      Common() {
+        cholmod_start(this);
+        print = 0;
+        error_handler = nullptr;
+      }
+      ~Common() { cholmod_finish(this); }
+    } own;
     cholmod_dense b{};
     b.nrow = b.d = static_cast<std::size_t>(reduced.rows());
     b.ncol = static_cast<std::size_t>(reduced.cols());
@@ -122,10 +131,10 @@ struct Cholesky::Impl {
     b.x = reduced.data();
     b.xtype = CHOLMOD_REAL;
     b.dtype = CHOLMOD_DOUBLE;
-    cholmod_dense* x = cholmod_solve(CHOLMOD_A, factor, &b, &mutable_common);
-    check("solution");
+    cholmod_dense* x = cholmod_solve(CHOLMOD_A, factor, &b, &own);
+    check("solution", own);
     std::copy_n(static_cast<const double*>(x->x), reduced.size(), reduced.data());
-    cholmod_free_dense(&x, &mutable_common);
+    cholmod_free_dense(&x, &own);
   }
 };
 
@@ -247,63 +256,6 @@ std::vector<Index> matrix_components(const SparseMatrix& matrix) {
     ++next;
   }
   return component;
-}
-
-SemidefiniteSolver::SemidefiniteSolver(const SparseMatrix& matrix)
-    : components_(matrix_components(matrix)) {
-  const Index n = static_cast<Index>(matrix.rows());
-  for (const Index c : components_) n_components_ = std::max(n_components_, c + 1);
-  sizes_.assign(static_cast<std::size_t>(n_components_), 0);
-  // Ground the row with the largest diagonal of each component: the best determined one.
-  std::vector<Index> ground(static_cast<std::size_t>(n_components_), -1);
-  const Vector diagonal = matrix.diagonal();
-  for (Index row = 0; row < n; ++row) {
-    const Index c = components_[row];
-    if (c < 0) continue;
-    ++sizes_[c];
-    if (ground[c] < 0 || diagonal[row] > diagonal[ground[c]]) ground[c] = row;
-  }
-  std::vector<bool> fixed(static_cast<std::size_t>(n), false);
-  for (Index row = 0; row < n; ++row) fixed[row] = components_[row] < 0;
-  for (const Index row : ground) fixed[row] = true;
-  solver_ = std::make_unique<Cholesky>(matrix, fixed);
-}
-
-Matrix SemidefiniteSolver::solve(Matrix rhs) const {
-  const auto remove_means = [&](Matrix& values) {
-    for (Eigen::Index k = 0; k < values.cols(); ++k) {
-      std::vector<double> sum(sizes_.size(), 0.0);
-      for (std::size_t row = 0; row < components_.size(); ++row)
-        if (components_[row] >= 0) sum[components_[row]] += values(static_cast<Index>(row), k);
-      for (std::size_t row = 0; row < components_.size(); ++row) {
-        const Index c = components_[row];
-        if (c >= 0)
-          values(static_cast<Index>(row), k) -= sum[c] / sizes_[c];
-        else
-          values(static_cast<Index>(row), k) = 0;
-      }
-    }
-  };
-  if (rhs.rows() != static_cast<Eigen::Index>(components_.size()))
-    throw InvalidOption("a right-hand side of " + std::to_string(rhs.rows()) + " rows for " +
-                        std::to_string(components_.size()) + " unknowns");
-  remove_means(rhs);
-  Matrix result = solver_->solve(rhs);
-  remove_means(result);
-  return result;
-}
-
-double SemidefiniteSolver::imbalance(const Vector& rhs) const {
-  std::vector<double> sum(sizes_.size(), 0.0), total(sizes_.size(), 0.0);
-  for (std::size_t row = 0; row < components_.size(); ++row)
-    if (components_[row] >= 0) {
-      sum[components_[row]] += rhs[static_cast<Index>(row)];
-      total[components_[row]] += std::abs(rhs[static_cast<Index>(row)]);
-    }
-  double worst = 0;
-  for (std::size_t c = 0; c < sum.size(); ++c)
-    if (total[c] > 0) worst = std::max(worst, std::abs(sum[c]) / total[c]);
-  return worst;
 }
 
 }  // namespace carat

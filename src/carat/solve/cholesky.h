@@ -1,5 +1,5 @@
 #pragma once
-// Direct solution of symmetric positive (semi)definite systems.
+// Direct solution of symmetric positive definite systems.
 
 #include <memory>
 #include <string>
@@ -37,6 +37,7 @@ class Cholesky {
   /// \throws InvalidOption  another pattern
   void refactor(const SparseMatrix& matrix);
 
+  /// Several threads may call this at once.
   /// \param rhs  (n, k): k right-hand sides; fixed rows are ignored
   /// \return (n, k); zero in fixed rows
   /// \throws SolverFailure  the solution is not finite
@@ -47,35 +48,6 @@ class Cholesky {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
-};
-
-/// The solution operator of a symmetric positive semidefinite matrix whose kernel is spanned by
-/// the constants of its connected components: a stiffness matrix without boundary conditions.
-///
-/// Works in the complement of the constants: one unknown a component is held at zero, the
-/// solution is then shifted to mean zero. Rows without entries are excluded; their value is 0.
-class SemidefiniteSolver {
- public:
-  /// \throws SolverFailure  a pivot fails though every component is grounded
-  explicit SemidefiniteSolver(const SparseMatrix& matrix);
-
-  /// \param rhs  (n, k). Its mean over each component is subtracted: see imbalance().
-  /// \return (n, k), mean zero over each component
-  Matrix solve(Matrix rhs) const;
-
-  /// |sum of rhs| / sum |rhs| over the worst component: 0 for a compatible right-hand side.
-  double imbalance(const Vector& rhs) const;
-
-  /// Component of every row by non-zero entries, numbered by first row; -1 for empty rows.
-  const std::vector<Index>& components() const { return components_; }
-  Index n_components() const { return n_components_; }
-  const FactorInfo& info() const { return solver_->info(); }
-
- private:
-  std::vector<Index> components_;
-  std::vector<Index> sizes_;
-  Index n_components_ = 0;
-  std::unique_ptr<Cholesky> solver_;
 };
 
 /// Connected components of a matrix by its non-zero off-diagonal values, numbered by first row;
