@@ -117,6 +117,10 @@ void check_output(const std::string& path, Content content) {
     throw InvalidOption(path + ": " + format->title +
                         " files carry no fields, the result would be lost; use one of " +
                         writable_extensions(content));
+  check_output_folder(path);
+}
+
+void check_output_folder(const std::string& path) {
   const fs::path folder =
       fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   std::error_code ignored;

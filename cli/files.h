@@ -30,6 +30,10 @@ enum class Content {
 /// \throws InvalidOption  a format without fields where they matter
 void check_output(const std::string& path, Content content);
 
+/// Refuses a path whose folder is missing, or that is one.
+/// \throws IoError
+void check_output_folder(const std::string& path);
+
 /// Refuses a format that cannot hold this kind of mesh. To be called as soon as the kind is known.
 /// \throws InvalidOption  names the formats that can
 void check_output_kind(const std::string& path, const KindWords& kind);

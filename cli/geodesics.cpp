@@ -1,34 +1,79 @@
 // carat geodesics: distance along a surface or through a volume.
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "carat/apps/heat_geodesics.h"
 #include "carat/base/error.h"
+#include "carat/io/npy.h"
 #include "cli/command.h"
 #include "cli/files.h"
 #include "cli/operator_options.h"
+#include "cli/source_file.h"
 
 namespace carat::cli {
 namespace {
 
+using SourceSets = std::vector<std::vector<GeodesicSource>>;
+
+/// More distances than this, one field each, are better kept in a matrix.
+constexpr std::size_t kMostFields = 64;
+
 struct Options {
-  std::string input, output;
+  std::string input, output, sources_file;
   std::vector<Index> sources;
+  bool each = false;
   double t_coef = 1;
-  std::string edge_length = "max", directions = "samples";
+  std::string edge_length = "max", directions = "samples", solver = "auto";
   OperatorOptions discretization;
 };
 
-/// Before any work: the library says the same, but after the factorisations.
-void check_sources(const std::vector<Index>& sources, Index n_vertices) {
-  for (const Index v : sources)
+bool is_matrix(const std::string& path) {
+  return std::filesystem::path(path).extension() == ".npy";
+}
+
+/// What can be refused before the mesh is read.
+void check(const Options& options) {
+  if (options.sources.empty() && options.sources_file.empty())
+    throw InvalidOption("--source is required, or --sources-file with vertices to measure from");
+  if (!is_matrix(options.output)) {
+    check_output(options.output, Content::MeshFields);
+    return;
+  }
+  if (!options.each)
+    throw InvalidOption(options.output +
+                        ": a matrix of distances has one row a source; add --each, or name a mesh "
+                        "file for the one distance from all sources");
+  check_output_folder(options.output);
+}
+
+/// The vertices given one by one, and those of the file; with --each all by themselves.
+SourceSets source_sets(const Options& options, Index n_vertices) {
+  SourceSets sets;
+  for (const Index v : options.sources) {
     if (v < 0 || v >= n_vertices)
       throw InvalidOption("--source " + std::to_string(v) +
                               ": this vertex does not exist; the mesh has vertices 0 to " +
                               std::to_string(n_vertices - 1),
                           {v});
+    sets.push_back({{v}});
+  }
+  if (!options.sources_file.empty())
+    for (auto& set : read_source_sets(options.sources_file, n_vertices))
+      sets.push_back(std::move(set));
+  if (options.each) {
+    if (!is_matrix(options.output) && !options.output.empty() && sets.size() > kMostFields)
+      throw InvalidOption(options.output + ": " + std::to_string(sets.size()) +
+                          " distances are too many for fields of a mesh, at most " +
+                          std::to_string(kMostFields) + "; name a matrix file, .npy");
+    return sets;
+  }
+  std::vector<GeodesicSource> all;
+  for (const auto& set : sets) all.insert(all.end(), set.begin(), set.end());
+  return {std::move(all)};
 }
 
 /// Unit vectors along which the distance grows, one an element; zero where it is infinite or flat.
@@ -56,38 +101,129 @@ void report_distance(Session& session, const GeodesicDistance& distance) {
   session.say("distance: " + describe_extremes(distance.values));
 }
 
+/// What many distances have in common.
+struct Summary {
+  Index sets = 0, incomplete_sets = 0;  // sets that do not reach all vertices
+  std::int64_t unresolved_samples = 0;
+  double largest = 0;
+  Index largest_set = 0;
+
+  void add(const GeodesicDistance& distance) {
+    if (!distance.unreachable_vertices.empty()) ++incomplete_sets;
+    unresolved_samples += distance.unresolved_samples;
+    for (const double value : distance.values)
+      if (std::isfinite(value) && value > largest) {
+        largest = value;
+        largest_set = sets;
+      }
+    ++sets;
+  }
+};
+
+void report_each(Session& session, const Summary& summary, double seconds) {
+  Json& report = session.report();
+  report["source_sets"] = summary.sets;
+  report["seconds_per_source_set"] = seconds / std::max(1, summary.sets);
+  report["unresolved_samples"] = summary.unresolved_samples;
+  report["incomplete_source_sets"] = summary.incomplete_sets;
+  report["largest_distance"] = {{"value", summary.largest}, {"source_set", summary.largest_set}};
+  if (summary.unresolved_samples > 0)
+    session.say("! " + std::to_string(summary.unresolved_samples) +
+                " gradient samples that the heat does not reach in double precision: distances "
+                "are too small behind them; a larger --t-coef helps");
+  if (summary.incomplete_sets > 0)
+    session.say("! " + count(summary.incomplete_sets, "source") +
+                " that do not reach all vertices: these have infinite distances");
+  session.say(count(summary.sets, "source") + ", " + text(seconds / std::max(1, summary.sets)) +
+              " s each; largest distance " + text(summary.largest) + " (source " +
+              std::to_string(summary.largest_set) + ")");
+}
+
+/// Distances from every source by itself, into the rows of a matrix or fields of the mesh.
+template <class Data>
+void measure_each(Session& session, const Options& options, Data& data,
+                  const HeatGeodesics& geodesics, const SourceSets& sets) {
+  Summary summary;
+  const auto start = std::chrono::steady_clock::now();
+  const auto for_each = [&](const auto& use) {
+    session.phase("solve", [&](ProgressLine& line) {
+      geodesics.distances(sets, [&](Index set, GeodesicDistance&& distance) {
+        summary.add(distance);
+        use(set, std::move(distance.values));
+        line.show("solve " + std::to_string(set + 1) + " of " + std::to_string(sets.size()));
+        return true;
+      });
+    });
+    report_each(session, summary,
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  };
+  const Index rows = static_cast<Index>(sets.size()), columns = data.mesh.n_vertices();
+  if (is_matrix(options.output)) {
+    write_npy(options.output, rows, columns,
+              [&](const PutRow& put) { for_each([&](Index, Vector&& values) { put(values); }); });
+    session.report()["output"] = options.output;
+    session.report()["matrix"] = {{"shape", {rows, columns}},
+                                  {"bytes", std::filesystem::file_size(options.output)}};
+    session.say("written: " + options.output + ", " + std::to_string(rows) + " x " +
+                std::to_string(columns));
+    return;
+  }
+  data.fields.vertex.clear();
+  element_fields(data).clear();
+  for_each([&](Index set, Vector&& values) {
+    if (!options.output.empty())
+      data.fields.vertex.push_back(scalar_field("distance_" + std::to_string(set), values));
+  });
+  write_output(session, options.output, "Geodesic distances", std::move(data));
+}
+
 template <class Data>
 void measure(Session& session, const Options& options, Data& data) {
-  check_output_kind(options.output, words(data.mesh));
-  check_sources(options.sources, data.mesh.n_vertices());
-  const bool writes = !options.output.empty(), of_elements = options.directions == "elements";
+  if (!is_matrix(options.output)) check_output_kind(options.output, words(data.mesh));
+  const SourceSets sets = source_sets(options, data.mesh.n_vertices());
+  const bool has_directions = !options.output.empty() && !options.each;
+  const bool of_elements = options.directions == "elements";
   Discretization discretization = discretize(
       session, data.mesh, options.discretization,
-      writes || of_elements ? DiscretizationParts::Frames : DiscretizationParts::Gradient);
+      has_directions || of_elements ? DiscretizationParts::Frames : DiscretizationParts::Gradient);
   const TimeStepLength length =
       options.edge_length == "mean" ? TimeStepLength::MeanEdge : TimeStepLength::MaxEdge;
   const HeatDirections directions =
       of_elements ? HeatDirections::Elements : HeatDirections::Samples;
+  const SolverOptions solver{.kind = solver_kind(options.solver),
+                             .right_hand_sides = static_cast<Index>(sets.size()),
+                             .threads = session.threads()};
   const HeatGeodesics geodesics = session.phase("factor", [&] {
     return HeatGeodesics(data.mesh, std::move(discretization),
-                         {options.t_coef, length, directions});
+                         {options.t_coef, length, directions, solver});
   });
-  std::vector<GeodesicSource> sources;
-  for (const Index v : options.sources) sources.push_back({v});
-  const GeodesicDistance distance =
-      session.phase("solve", [&] { return geodesics.distance(sources); });
 
   Json& report = session.report();
-  report["options"]["sources"] = options.sources;
+  if (!options.sources.empty()) report["options"]["sources"] = options.sources;
+  if (!options.sources_file.empty()) report["options"]["sources_file"] = options.sources_file;
+  report["options"]["each"] = options.each;
   report["options"]["t_coef"] = options.t_coef;
   report["options"]["edge_length"] = options.edge_length;
   report["options"]["directions"] = options.directions;
   report["time_step"] = geodesics.time_step();
-  report["solver"] = {{"method", geodesics.poisson_info().method},
-                      {"ordering", geodesics.poisson_info().ordering},
-                      {"factor_nnz", geodesics.poisson_info().nonzeros}};
+  const SolverInfo& poisson = geodesics.poisson_info();
+  report["solver"] = {{"kind", solver_kind_name(poisson.kind)},
+                      {"method", poisson.method},
+                      {"reason", poisson.reason},
+                      {"ordering", poisson.ordering},
+                      {"factor_nnz", poisson.nonzeros},
+                      {"heat_method", geodesics.heat_info().method},
+                      {"heat_reason", geodesics.heat_info().reason}};
+  session.say("solver: heat " + geodesics.heat_info().method + ", distance " + poisson.method +
+              (poisson.reason.empty() ? "" : " (" + poisson.reason + ")"));
+  if (options.each) {
+    measure_each(session, options, data, geodesics, sets);
+    return;
+  }
+  const GeodesicDistance distance =
+      session.phase("solve", [&] { return geodesics.distance(sets.front()); });
   report_distance(session, distance);
-  if (!writes) return;
+  if (options.output.empty()) return;
   data.fields.vertex = {scalar_field("distance", distance.values)};
   element_fields(data) = {
       direction_field(geodesics.discretization(), distance.values, n_elements(data.mesh))};
@@ -95,7 +231,7 @@ void measure(Session& session, const Options& options, Data& data) {
 }
 
 void run(Session& session, const Options& options) {
-  check_output(options.output, Content::MeshFields);
+  check(options);
   MeshData data = read_input(session, options.input);
   std::visit([&](auto& held) { measure(session, options, held); }, data);
 }
@@ -106,8 +242,12 @@ std::function<void(Session&)> declare(CLI::App& app) {
   app.add_option("--source", options->sources,
                  "Vertex to measure from, counted from 0; repeat it for\n"
                  "the nearest of several")
-      ->required()
       ->allow_extra_args(false);
+  app.add_option("--sources-file", options->sources_file,
+                 "Text file of such vertices, one or several a line");
+  app.add_flag("--each", options->each,
+               "Distances from every --source and every line of the file\n"
+               "by itself, instead of the nearest of all");
   app.add_option("--t-coef", options->t_coef,
                  "Time step t = t_coef h^2 of the heat; a smaller one is\n"
                  "sharper, a larger one smoother")
@@ -124,7 +264,14 @@ std::function<void(Session&)> declare(CLI::App& app) {
   app.add_option("-o,--output", options->output,
                  "File for the mesh with the fields distance (vertices)\n"
                  "and direction (faces or cells), or a view (.html);\n"
+                 "with --each the fields distance_0, distance_1, ..., or a\n"
+                 "matrix (.npy, sources x vertices, float64), of which only\n"
+                 "a few rows are in memory at a time;\n"
                  "without it nothing is written");
+  app.add_option("--solver", options->solver,
+                 "Of the distance: auto, cholesky, multigrid,\n"
+                 "incomplete-cholesky, sparser-cholesky")
+      ->type_name("NAME");
   declare_operator_options(app, options->discretization, Application::Geodesics);
   return [options](Session& session) { run(session, *options); };
 }
@@ -139,7 +286,8 @@ const Command geodesics_command = {
     "  carat geodesics bunny.obj --source 0 -o distance.html\n"
     "  carat geodesics ball.vtu --source 0 -o distance.vtu\n"
     "  carat geodesics mesh.ply --source 12 --source 340 -o distance.vtp\n"
-    "  carat geodesics mesh.ply --source 0 --t-coef 4 --edge-length mean --json\n",
+    "  carat geodesics mesh.ply --source 0 --t-coef 4 --edge-length mean --json\n"
+    "  carat geodesics mesh.ply --sources-file landmarks.txt --each -o distances.npy\n",
     true,
     declare};
 

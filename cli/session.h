@@ -4,6 +4,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -38,11 +39,14 @@ class Session {
   void add_diagnostics(const Diagnostics& diagnostics);
 
   /// Runs `work` as a named phase: timed, and shown on a terminal while it lasts. Phases of the
-  /// same name add up.
+  /// same name add up. Work that takes a ProgressLine can tell there how far it is.
   template <class Work>
   auto phase(const char* name, Work&& work) {
-    const Phase running(*this, name);
-    return std::forward<Work>(work)();
+    Phase running(*this, name);
+    if constexpr (std::is_invocable_v<Work, ProgressLine&>)
+      return std::forward<Work>(work)(running.line);
+    else
+      return std::forward<Work>(work)();
   }
 
   /// Adds to the bytes that a phase has to read and write at least, for its rate.

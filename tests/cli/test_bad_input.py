@@ -51,6 +51,25 @@ class Usage(CaratTest):
                 self.fail_with(2, *arguments, says=says)
         self.assertEqual(self.files(), ["mesh.ply"])
 
+    def test_source_files(self):
+        mesh = ["geodesics", "mesh.ply", "--each"]
+        for content, says in [("0\n# none\n49\n", ["list.txt: line 3: vertex 49", "vertices 0 to 48"]),
+                              ("0\n1 -2\n", "line 2: vertex -2"),
+                              ("0\n1 x\n", "line 2: 'x' is not a whole number"),
+                              ("0\n1.5\n", "line 2"),
+                              ("# none\n", "lists no source")]:
+            with self.subTest(content=content):
+                self.write("list.txt", content)
+                self.fail_with(3, *mesh, "--sources-file", "list.txt", "-o", "a.npy", says=says)
+        self.fail_with(3, *mesh, "--sources-file", "gone.txt", says="gone.txt")
+        self.write("list.txt", "".join(f"{k}\n" for k in range(49)) * 2)
+        self.fail_with(2, *mesh, "--sources-file", "list.txt", "-o", "a.vtp",
+                       says=["98 distances are too many", ".npy"])
+        self.fail_with(3, *mesh, "--source", 0, "-o", "no/a.npy", says="folder no does not exist")
+        self.fail_with(2, "geodesics", "mesh.ply", "--source", 0, "-o", "a.npy", says="--each")
+        self.fail_with(2, *mesh, "--source", 0, "--solver", "magic", says="multigrid")
+        self.assertEqual(self.files(), ["list.txt", "mesh.ply"])
+
     def test_expressions(self):
         for text, says in [
             ("sin(x", ["'sin(x', character 6", "missing parenthesis"]),

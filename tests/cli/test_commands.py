@@ -1,7 +1,9 @@
 import re
 """What every command does when all is well."""
 
+import ast
 import os
+import struct
 import subprocess
 
 from support import PROGRAM, CaratTest, main
@@ -175,6 +177,56 @@ class Reports(CaratTest):
         self.assertEqual([f["name"] for f in fields["vertex"]], ["distance"])
         self.assertEqual([(f["name"], f["components"]) for f in fields["face"]],
                          [("direction", 3)])
+
+    def npy(self, name):
+        """Shape and rows of a matrix of doubles, read as the format says."""
+        content = (self.folder / name).read_bytes()
+        self.assertEqual(content[:8], b"\x93NUMPY\x01\x00")
+        start = 10 + struct.unpack("<H", content[8:10])[0]
+        self.assertEqual(start % 64, 0)
+        header = ast.literal_eval(content[10:start].decode("ascii"))
+        self.assertEqual(header["fortran_order"], False)
+        rows, columns = header["shape"]
+        order = header["descr"]
+        self.assertIn(order, ["<f8", ">f8"])
+        values = struct.unpack(f"{order[0]}{rows * columns}d", content[start:])
+        return [values[columns * k:columns * (k + 1)] for k in range(rows)]
+
+    def field(self, name, *arguments):
+        """A vertex field of a PLY file that holds x, y, z and it alone."""
+        self.succeed("geodesics", "mesh.ply", *arguments, "-o", name)
+        content = (self.folder / name).read_bytes()
+        n = int(content.split(b"element vertex ")[1].split()[0])
+        start = content.index(b"end_header\n") + 11
+        return [row[3] for row in struct.iter_unpack("<4d", content[start:start + 32 * n])]
+
+    def test_distances_from_each_source(self):
+        (self.folder / "sources.txt").write_text("# landmarks\n7\n\n3 5  # the nearest\n" +
+                                                 "".join(f"{k}\n" for k in range(20)))
+        report = self.report("geodesics", "mesh.ply", "--source", 11, "--sources-file",
+                             "sources.txt", "--each", "-o", "distances.npy")
+        self.check(report, "geodesics", ["read", "symbolic", "numeric", "factor", "solve"])
+        rows = self.npy("distances.npy")
+        n = report["sizes"]["vertices"]
+        self.assertEqual(report["source_sets"], 23)
+        self.assertEqual(report["matrix"]["shape"], [23, n])
+        self.assertEqual(report["matrix"]["bytes"],
+                         (self.folder / "distances.npy").stat().st_size)
+        self.assertEqual(report["incomplete_source_sets"], 0)
+        self.assertEqual(report["largest_distance"]["value"], max(map(max, rows)))
+        self.assertGreater(report["seconds_per_source_set"], 0)
+        for k, arguments in {0: ["--source", 11], 1: ["--source", 7],
+                             2: ["--source", 3, "--source", 5], 22: ["--source", 19]}.items():
+            for a, b in zip(rows[k], self.field("one.ply", *arguments), strict=True):
+                self.assertAlmostEqual(a, b, delta=1e-12)
+        # Without --each: the nearest of all.
+        (self.folder / "two.txt").write_text("3\n5\n")
+        self.assertEqual(self.field("one.ply", "--sources-file", "two.txt"),
+                         self.field("two.ply", "--source", 3, "--source", 5))
+        self.report("geodesics", "mesh.ply", "--source", 3, "--source", 5, "--each", "-o", "f.vtp")
+        fields = self.report("info", "f.vtp")["fields"]
+        self.assertEqual([f["name"] for f in fields["vertex"]], ["distance_0", "distance_1"])
+        self.assertEqual(fields["face"], [])
 
     def test_time_step_options(self):
         step = {name: self.report("geodesics", "mesh.ply", "--source", 0, *arguments)["time_step"]
