@@ -103,8 +103,10 @@ Vector curvature_on(const PolygonMesh& mesh, const Method& method, int threads) 
 
 GeodesicDistance distance_on(const PolygonMesh& mesh, Index source, const Method& method,
                              int threads) {
-  return HeatGeodesics(mesh, discretize(mesh, method.name,
-                                        options_of(method, DiscretizationParts::Gradient, threads)))
+  return HeatGeodesics(mesh,
+                       discretize(mesh, method.name,
+                                  options_of(method, DiscretizationParts::Gradient, threads)),
+                       {.solver = {.threads = threads}})
       .distance(source);
 }
 

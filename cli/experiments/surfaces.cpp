@@ -39,15 +39,19 @@ double great_circle_error(const PolygonMesh& mesh, const Vector& distance, Index
 
 /// Of six vertices spread over the mesh.
 Json mean_distance_error(const PolygonMesh& mesh, Discretization discretization,
-                         const HeatGeodesicsOptions& options) {
-  const HeatGeodesics geodesics(mesh, std::move(discretization), options);
+                         HeatGeodesicsOptions options) {
   constexpr Index kSources = 6;
+  options.solver = {.right_hand_sides = kSources, .threads = discretization.options.threads};
+  std::vector<std::vector<GeodesicSource>> sources;
+  for (std::int64_t k = 0; k < kSources; ++k)
+    sources.push_back({{static_cast<Index>(k * mesh.n_vertices() / kSources)}});
   double sum = 0;
-  for (Index k = 0; k < kSources; ++k) {
-    const auto source = static_cast<Index>(std::int64_t{k} * mesh.n_vertices() / kSources);
-    const double error = great_circle_error(mesh, geodesics.distance(source).values, source);
-    sum += error * error;
-  }
+  HeatGeodesics(mesh, std::move(discretization), options)
+      .distances(sources, [&](Index k, GeodesicDistance&& distance) {
+        const Index source = sources[static_cast<std::size_t>(k)].front().vertex;
+        sum += std::pow(great_circle_error(mesh, distance.values, source), 2);
+        return true;
+      });
   return std::sqrt(sum / kSources);
 }
 
