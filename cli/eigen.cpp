@@ -7,6 +7,7 @@
 #include "carat/apps/eigenmodes.h"
 #include "carat/base/error.h"
 #include "carat/mesh/statistics.h"
+#include "carat/operators/registry.h"
 #include "cli/command.h"
 #include "cli/files.h"
 #include "cli/mesh_kinds.h"
@@ -16,7 +17,7 @@ namespace carat::cli {
 namespace {
 
 struct Options {
-  std::string input, output;
+  std::string input, output, solver = "auto";
   Index count = 10;
   bool dirichlet = false;
   OperatorOptions discretization;
@@ -49,10 +50,21 @@ void report_pairs(Session& session, const EigenPairs& pairs) {
     session.say(line);
   }
   report["zero_modes"] = pairs.zero_modes;
-  report["solver"] = {{"method", pairs.factor.method},
-                      {"ordering", pairs.factor.ordering},
-                      {"factor_nnz", pairs.factor.nonzeros},
-                      {"solves", pairs.solves}};
+  const FactorInfo& factor = pairs.factor;
+  report["solver"] = {{"kind", eigen_method_name(pairs.method)},
+                      {"method", factor.method},
+                      {"reason", pairs.reason},
+                      {"ordering", factor.ordering},
+                      {"factor_nnz", factor.nonzeros},
+                      {"factor_seconds", factor.analyse_seconds + factor.factor_seconds},
+                      {"iterations", pairs.iterations},
+                      {"solves", pairs.solves},
+                      {"bytes", pairs.bytes}};
+  session.say("solver: " + factor.method +
+              (pairs.iterations > 0 ? ", " + count(pairs.iterations, "iteration") : "") + ", " +
+              count(pairs.solves, pairs.iterations > 0 ? "multigrid cycle" : "solve") + ", " +
+              text(1e-6 * static_cast<double>(pairs.bytes)) + " MB" +
+              (pairs.reason.empty() ? "" : " (" + pairs.reason + ")"));
 }
 
 template <class Data>
@@ -61,8 +73,17 @@ void find_modes(Session& session, const Options& options, Data& data) {
   const std::vector<Index> fixed = dirichlet_vertices(data.mesh, options.dirichlet);
   const Discretization discretization =
       discretize(session, data.mesh, options.discretization, DiscretizationParts::Matrices);
-  const EigenPairs pairs =
-      session.phase("solve", [&] { return eigenmodes(discretization, options.count, fixed); });
+  EigenOptions solver{.method = eigen_method(options.solver),
+                      .dimension = dimension(data.mesh),
+                      .sparser = sparser_stiffness(data.mesh, discretization),
+                      .threads = session.threads(),
+                      .progress = {}};
+  const EigenPairs pairs = session.phase("solve", [&](ProgressLine& line) {
+    solver.progress = [&](Index converged) {
+      line.show("solve: " + std::to_string(converged) + " of " + count(options.count, "pair"));
+    };
+    return eigenmodes(discretization, options.count, fixed, solver);
+  });
   session.report()["options"]["count"] = options.count;
   session.report()["options"]["dirichlet"] = options.dirichlet;
   report_pairs(session, pairs);
@@ -92,6 +113,11 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "File for the mesh with the fields mode_1, mode_2, ...\n"
                  "(vertices), or a view (.html); without it nothing is\n"
                  "written");
+  app.add_option("--solver", options->solver,
+                 "auto: a Cholesky factorisation of surfaces and small volumes,\n"
+                 "an iteration with multigrid for large ones. Others: cholesky,\n"
+                 "iterative")
+      ->type_name("NAME");
   declare_operator_options(app, options->discretization, Application::Eigenmodes);
   return [options](Session& session) { run(session, *options); };
 }

@@ -27,6 +27,9 @@ inline constexpr KindWords kVolumeWords{"volume", "volumes", "cell", "face", "vo
 inline const KindWords& words(const PolygonMesh&) { return kSurfaceWords; }
 inline const KindWords& words(const PolyhedralMesh&) { return kVolumeWords; }
 
+inline int dimension(const PolygonMesh&) { return 2; }
+inline int dimension(const PolyhedralMesh&) { return 3; }
+
 inline Index n_elements(const PolygonMesh& mesh) { return mesh.n_faces(); }
 inline Index n_elements(const PolyhedralMesh& mesh) { return mesh.n_cells(); }
 

@@ -4,10 +4,10 @@
 set -euo pipefail
 
 # Libraries are looked for as Debian packages, tools (tool:package) on the PATH.
-build=(libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas-dev libmetis-dev libvtk9-dev
+build=(libeigen3-dev libsuitesparse-dev libopenblas-dev libmetis-dev libvtk9-dev
        libmuparser-dev libcli11-dev nlohmann-json3-dev libcairo2-dev zlib1g-dev glmark2-data
        ca-certificates pkg-config:pkg-config cmake:cmake ninja:ninja-build g++:g++ node:nodejs npm:npm python3:python3)
-test=(libgtest-dev libbenchmark-dev fonts-dejavu-core chromium:chromium clang-format-14:clang-format-14)
+test=(libgtest-dev libbenchmark-dev libspectra-dev fonts-dejavu-core chromium:chromium clang-format-14:clang-format-14)
 
 wanted=()
 for group in "$@"; do

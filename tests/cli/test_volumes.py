@@ -319,6 +319,14 @@ class Eigen(CaratTest):
         for value, factor in zip(report["eigenvalues"], exact):
             self.assertAlmostEqual(value / (factor * math.pi ** 2), 1, delta=0.05)
         self.assertLess(max(report["residuals"]), 1e-9)
+        both = {solver: self.report("eigen", "cube.vtu", "-k", 4, "--solver", solver)
+                for solver in ("cholesky", "iterative")}
+        for solver, run in both.items():
+            self.assertEqual(run["solver"]["kind"], solver)
+            self.assertGreater(run["solver"]["bytes"], 0)
+        for one, other in zip(*(run["eigenvalues"] for run in both.values())):
+            self.assertAlmostEqual(one, other, delta=1e-9)
+        self.fail_with(2, "eigen", "cube.vtu", "--solver", "qr", says="cholesky, iterative")
         report = self.report("eigen", "cube.vtu", "-k", 5, "-o", "out.ovm")
         self.assertEqual(report["zero_modes"], 1)
         for value, factor in zip(report["eigenvalues"], [0, 1, 1, 1, 2]):

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "carat/base/error.h"
 #include "carat/operators/registry.h"
@@ -267,6 +268,109 @@ TEST(EigenSolver, values_that_stand_out_spoil_no_others) {
     const Matrix gram = pairs.vectors.transpose() * pairs.vectors;
     EXPECT_LT((gram - Matrix::Identity(10, 10)).cwiseAbs().maxCoeff(), 1e-11);
   }
+}
+
+const EigenOptions kCholesky{.method = EigenMethod::Cholesky};
+const EigenOptions kIterative{.method = EigenMethod::Iterative};
+
+TEST(EigenSolver, iteration_factorisation_and_dense_method_agree) {
+  const Discretization d = discretize(quad_grid(30, 30));
+  const EigenPairs all = smallest_eigenpairs(d.stiffness, d.mass, d.n_vertices());
+  for (const Index count : {2, 7, 24, 40}) {
+    SCOPED_TRACE(count);
+    const EigenPairs lanczos = smallest_eigenpairs(d.stiffness, d.mass, count, {}, kCholesky);
+    const EigenPairs lobpcg = smallest_eigenpairs(d.stiffness, d.mass, count, {}, kIterative);
+    EXPECT_EQ(lanczos.method, EigenMethod::Cholesky);
+    EXPECT_EQ(lobpcg.method, EigenMethod::Iterative);
+    EXPECT_EQ(lanczos.iterations, 0);
+    EXPECT_GT(lobpcg.iterations, 0);
+    EXPECT_GT(lobpcg.bytes, 0);
+    const Vector scale = all.values.segment(1, count - 1);
+    for (const EigenPairs* const pairs : {&lanczos, &lobpcg}) {
+      EXPECT_LT(((pairs->values.tail(count - 1) - scale).array() / scale.array()).abs().maxCoeff(),
+                1e-12);
+      expect_sound(*pairs, d.mass);
+      expect_complete(*pairs, d.stiffness, d.mass);
+    }
+  }
+}
+
+TEST(EigenSolver, iteration_finds_clusters_of_more_members_than_a_block_of_lanczos) {
+  // The hypercube: 2 k, binomial(9, k) times.
+  SparseMatrix cube(512, 512);
+  for (Index i = 0; i < 512; ++i) {
+    cube.insert(i, i) = 9;
+    for (Index bit = 1; bit < 512; bit *= 2) cube.insert(i, i ^ bit) = -1;
+  }
+  cube.makeCompressed();
+  const SparseMatrix mass = diagonal(Vector::Ones(512));
+  for (const Index count : {5, 10, 11, 46, 47}) {
+    SCOPED_TRACE(count);
+    const EigenPairs pairs = smallest_eigenpairs(cube, mass, count, {}, kIterative);
+    EXPECT_EQ(pairs.method, EigenMethod::Iterative);
+    for (Index k = 1; k < count; ++k)
+      EXPECT_NEAR(pairs.values[k], k < 10 ? 2 : k < 46 ? 4 : 6, 1e-11) << k;
+    expect_sound(pairs, mass);
+  }
+}
+
+TEST(EigenSolver, threads_do_not_change_a_bit) {
+  const Discretization d = discretize(quad_grid(60, 50));
+  for (const EigenMethod method : {EigenMethod::Cholesky, EigenMethod::Iterative}) {
+    const EigenPairs one =
+        smallest_eigenpairs(d.stiffness, d.mass, 12, {}, {.method = method, .threads = 1});
+    const EigenPairs three =
+        smallest_eigenpairs(d.stiffness, d.mass, 12, {}, {.method = method, .threads = 3});
+    EXPECT_EQ(one.values, three.values);
+    EXPECT_EQ(one.vectors, three.vectors);
+  }
+}
+
+TEST(EigenSolver, iteration_that_does_not_converge_tells_its_course) {
+  // A preconditioner of another matrix, whose smooth vectors are rough in this one.
+  const Discretization d = discretize(quad_grid(60, 50));
+  EigenOptions options = kIterative;
+  const Index n = d.n_vertices();
+  options.sparser = [n] {
+    Vector values(n);
+    for (Index i = 0; i < n; ++i) values[i] = std::pow(10.0, i % 31);
+    return diagonal(values);
+  };
+  try {
+    smallest_eigenpairs(d.stiffness, d.mass, 10, {}, options);
+    FAIL() << "converged";
+  } catch (const SolverFailure& failure) {
+    EXPECT_NE(std::string(failure.what()).find("residuals by iteration"), std::string::npos)
+        << failure.what();
+  }
+}
+
+TEST(EigenSolver, progress_is_told_and_may_end_the_work) {
+  struct Stop {};
+  const Discretization d = discretize(quad_grid(30, 30));
+  for (EigenOptions options : {kCholesky, kIterative}) {
+    Index last = -1;
+    options.progress = [&](Index converged) { last = converged; };
+    smallest_eigenpairs(d.stiffness, d.mass, 11, {}, options);
+    EXPECT_EQ(last, 10) << "the constant is known";
+    options.progress = [](Index) { throw Stop{}; };
+    EXPECT_THROW(smallest_eigenpairs(d.stiffness, d.mass, 11, {}, options), Stop);
+  }
+}
+
+TEST(EigenSolver, pairs_without_room_for_an_iteration_are_had_densely) {
+  const Discretization d = discretize(quad_grid(19, 17));
+  const EigenPairs pairs = smallest_eigenpairs(d.stiffness, d.mass, 200, {}, kIterative);
+  EXPECT_EQ(pairs.method, EigenMethod::Cholesky);
+  EXPECT_NE(pairs.reason.find("no room"), std::string::npos) << pairs.reason;
+  expect_sound(pairs, d.mass);
+}
+
+TEST(EigenSolver, names_of_methods_are_read_back) {
+  for (const EigenMethod method :
+       {EigenMethod::Auto, EigenMethod::Cholesky, EigenMethod::Iterative})
+    EXPECT_EQ(eigen_method(eigen_method_name(method)), method);
+  EXPECT_THROW(eigen_method("lanczos"), InvalidOption);
 }
 
 TEST(EigenSolver, bad_matrices_are_refused) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "carat/apps/eigenmodes.h"
 #include "carat/base/error.h"
@@ -93,6 +94,32 @@ TEST(Eigenmodes, ball_approaches_the_zeros_of_spherical_bessel_functions) {
     before = worst;
   }
   EXPECT_LT(before, 0.1);
+}
+
+TEST(Eigenmodes, iteration_finds_all_waves_of_a_cube) {
+  const PolyhedralMesh mesh = generate_volume("cube-hexahedra", {.level = 2});
+  const Discretization d = discretize(mesh, "diamond", kMatrices);
+  const EigenOptions options{
+      .method = EigenMethod::Iterative, .dimension = 3, .sparser = sparser_stiffness(mesh, d)};
+  for (const Index count : {4, 11, 30}) {
+    const EigenPairs few = eigenmodes(d, count, {}, options);
+    const EigenPairs direct = eigenmodes(d, count, {}, {.method = EigenMethod::Cholesky});
+    EXPECT_EQ(few.method, EigenMethod::Iterative);
+    EXPECT_LT((few.values - direct.values).cwiseAbs().maxCoeff(), 1e-11 * few.values[count - 1]);
+    EXPECT_LT(few.residuals.maxCoeff(), 3.1e-10);  // where the iteration stops
+  }
+}
+
+TEST(Eigenmodes, torus_and_sphere_by_iteration_have_their_clusters) {
+  for (const std::string family : {"sphere-triangles", "torus-triangles"}) {
+    SCOPED_TRACE(family);
+    const PolygonMesh mesh = generate_mesh(family, {.level = 3});
+    const Discretization d = discretize(mesh, "diamond", kMatrices);
+    const EigenPairs lobpcg = eigenmodes(d, 26, {}, {.method = EigenMethod::Iterative});
+    const EigenPairs lanczos = eigenmodes(d, 26, {}, {.method = EigenMethod::Cholesky});
+    EXPECT_LT((lobpcg.values - lanczos.values).cwiseAbs().maxCoeff(), 1e-11 * lobpcg.values[25]);
+    EXPECT_EQ(multiplicities(lobpcg.values, 1e-6), multiplicities(lanczos.values, 1e-6));
+  }
 }
 
 TEST(Eigenmodes, a_lumped_mass_with_a_negative_entry_is_refused) {

@@ -8,7 +8,7 @@
 namespace carat {
 
 EigenPairs eigenmodes(const Discretization& discretization, Index count,
-                      const std::vector<Index>& dirichlet_vertices) {
+                      const std::vector<Index>& dirichlet_vertices, const EigenOptions& options) {
   require_vertex_unknowns(discretization, "eigenmodes");
   const Index n = discretization.n_vertices();
   std::vector<bool> fixed(static_cast<std::size_t>(n), false);
@@ -20,7 +20,7 @@ EigenPairs eigenmodes(const Discretization& discretization, Index count,
                           {v});
     fixed[v] = true;
   }
-  return smallest_eigenpairs(discretization.stiffness, discretization.mass, count, fixed);
+  return smallest_eigenpairs(discretization.stiffness, discretization.mass, count, fixed, options);
 }
 
 }  // namespace carat

@@ -3,7 +3,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <random>
 #include <string>
@@ -11,6 +13,9 @@
 
 #include "carat/base/error.h"
 #include "carat/solve/krylov/largest_pairs.h"
+#include "carat/solve/krylov/lowest_pairs.h"
+#include "carat/solve/krylov/products.h"
+#include "carat/solve/multigrid.h"
 
 namespace carat {
 namespace {
@@ -23,10 +28,23 @@ constexpr Index kMaxDense = 3000;
 constexpr Index kSpareDimensions = 32;
 // The largest basis, 8 GB; a restart copies most of it.
 constexpr double kMaxEntries = 1e9;
+// Vectors a vector of a block that LOBPCG holds: three blocks and their products, two while they
+// are replaced.
+constexpr double kVectorsOfIteration = 13;
+// Where LOBPCG becomes faster in volumes.
+constexpr Index kIterativeFrom = 150000;
+/// Part of the free memory that a factor may take.
+constexpr double kMemoryShare = 0.5;
 // Residuals beyond this are worth as many solves as there are pairs.
 constexpr double kGoodResidual = 1e-9;
 // 1^T S 1 / sum |S_ij| of constants that S annihilates: rounding leaves about 1e-16.
 constexpr double kZeroEnergy = 1e-12;
+
+constexpr std::pair<EigenMethod, const char*> kNames[] = {
+    {EigenMethod::Auto, "auto"},
+    {EigenMethod::Cholesky, "cholesky"},
+    {EigenMethod::Iterative, "iterative"},
+};
 
 /// The rows and columns of a matrix that take part.
 SparseMatrix restrict_to(const SparseMatrix& matrix, const std::vector<Index>& kept) {
@@ -49,16 +67,22 @@ SparseMatrix restrict_to(const SparseMatrix& matrix, const std::vector<Index>& k
 
 /// S x = lambda M x over the rows that take part, with the null vectors of S that are known: the
 /// indicators of floating components.
-class Pencil final : public InverseOperator {
+class Pencil final : public InverseOperator, public PreconditionedPencil {
  public:
-  Pencil(const SparseMatrix& stiffness, const SparseMatrix& mass, std::vector<Index> kept)
-      : rows(std::move(kept)), s(restrict_to(stiffness, rows)), m(restrict_to(mass, rows)) {
+  Pencil(const SparseMatrix& stiffness, const SparseMatrix& mass, std::vector<Index> kept,
+         int threads)
+      : rows(std::move(kept)),
+        s(restrict_to(stiffness, rows)),
+        m(restrict_to(mass, rows)),
+        threads_(threads) {
     find_floating_components();
     ones_ = Vector::Ones(m.cols());
     row_mass_ = m * ones_;
     measure_.assign(floating.size(), 0.0);
     for (Index i = 0; i < size(); ++i)
       if (floating_of_[i] >= 0) measure_[floating_of_[i]] += row_mass_[i];
+    all_float_as_one_ =
+        n_zero() == 1 && std::count(floating_of_.begin(), floating_of_.end(), 0) == size();
     for (std::size_t f = 0; f < floating.size(); ++f)
       if (!(measure_[f] > 0))
         throw SolverFailure("the mass of the component of row (vertex) " +
@@ -71,7 +95,13 @@ class Pencil final : public InverseOperator {
   Index size() const override { return static_cast<Index>(rows.size()); }
   Index n_zero() const { return static_cast<Index>(floating.size()); }
 
-  Matrix mass_product(const Eigen::Ref<const Matrix>& x) const override { return m * x; }
+  Matrix mass_product(const Eigen::Ref<const Matrix>& x) const override {
+    return sparse_product(m, x, threads_);
+  }
+
+  Matrix stiffness_product(const Eigen::Ref<const Matrix>& x) const override {
+    return sparse_product(s, x, threads_);
+  }
 
   void project(Matrix& x) const override { take_out_constants(x, row_mass_, ones_); }
 
@@ -82,17 +112,8 @@ class Pencil final : public InverseOperator {
     return x;
   }
 
-  /// Every floating component is held at one row: right-hand sides in the range of S ask nothing
-  /// of it.
   void factorise() {
-    std::vector<Index> ground(floating.size(), -1);
-    const Vector diagonal = s.diagonal();
-    for (Index i = 0; i < size(); ++i)
-      if (const Index f = floating_of_[i];
-          f >= 0 && (ground[f] < 0 || diagonal[i] > diagonal[ground[f]]))
-        ground[f] = i;
-    std::vector<bool> held(rows.size(), false);
-    for (const Index i : ground) held[i] = true;
+    const std::vector<bool> held = grounds();
     try {
       solver_ = std::make_unique<Cholesky>(s, held);
     } catch (const SolverFailure& failure) {
@@ -105,7 +126,52 @@ class Pencil final : public InverseOperator {
           {row});
     }
   }
-  const FactorInfo& factor_info() const { return solver_->info(); }
+  FactorInfo factor_info() const {
+    if (solver_) return solver_->info();
+    FactorInfo info;
+    info.method = "LOBPCG, multigrid";
+    info.nonzeros = preconditioner_->nonzeros();
+    info.factor_seconds = multigrid_seconds_;
+    return info;
+  }
+
+  /// \param sparser  empty: of S itself
+  void build_multigrid(const std::function<SparseMatrix()>& sparser) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<bool> held = grounds();
+    if (sparser) try {
+        preconditioner_ = std::make_unique<Multigrid>(restrict_to(sparser(), rows), held);
+      } catch (const SolverFailure&) {
+        // Not definite where S may be.
+      }
+    if (!preconditioner_) preconditioner_ = std::make_unique<Multigrid>(s, held);
+    multigrid_seconds_ =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  Matrix precondition(const Matrix& r) const override {
+    Matrix x(r.rows(), r.cols());
+    Vector one;
+    for (Eigen::Index k = 0; k < r.cols(); ++k) {
+      preconditioner_->apply(r.col(k), one);
+      x.col(k) = one;
+    }
+    project(x);
+    return x;
+  }
+
+  /// Every floating component is held at one row: right-hand sides in the range of S ask nothing
+  /// of it.
+  std::vector<bool> grounds() const {
+    std::vector<Index> ground(floating.size(), -1);
+    const Vector diagonal = s.diagonal();
+    for (Index i = 0; i < size(); ++i)
+      if (const Index f = floating_of_[i];
+          f >= 0 && (ground[f] < 0 || diagonal[i] > diagonal[ground[f]]))
+        ground[f] = i;
+    std::vector<bool> held(rows.size(), false);
+    for (const Index i : ground) held[i] = true;
+    return held;
+  }
 
   /// The normalised indicator of a floating component.
   Vector zero_mode(Index f) const {
@@ -131,7 +197,11 @@ class Pencil final : public InverseOperator {
   std::vector<Index> floating_of_;  // row -> floating component, or -1
   Vector ones_, row_mass_;
   std::vector<double> measure_;
+  bool all_float_as_one_ = false;
   std::unique_ptr<Cholesky> solver_;
+  std::unique_ptr<Multigrid> preconditioner_;
+  double multigrid_seconds_ = 0;
+  int threads_;
 };
 
 void Pencil::find_floating_components() {
@@ -160,6 +230,10 @@ void Pencil::find_floating_components() {
 
 void Pencil::take_out_constants(Matrix& x, const Vector& weights, const Vector& along) const {
   if (floating.empty()) return;
+  if (all_float_as_one_) {
+    for (auto column : x.colwise()) column -= weights.dot(column) / measure_[0] * along;
+    return;
+  }
   std::vector<double> mean(floating.size());
   for (Eigen::Index k = 0; k < x.cols(); ++k) {
     std::fill(mean.begin(), mean.end(), 0.0);
@@ -246,27 +320,98 @@ Index refine(const Pencil& pencil, const Vector& values, Matrix& vectors) {
   return static_cast<Index>(values.size());
 }
 
-/// The `count` pairs after the zero modes.
-/// \return number of right-hand sides solved for
-Index solve_nonzero(const Pencil& pencil, Index count, Vector& values, Matrix& vectors) {
-  const Index n = pencil.size(), subspace = krylov_dimension(count);
-  if (n <= kDense || subspace > n - pencil.n_zero() - kSpareDimensions) {
+/// Whether a block iteration has room beside so many pairs.
+bool fits_iteration(const Pencil& pencil, Index count, EigenMethod method) {
+  const Index basis =
+      method == EigenMethod::Iterative ? 3 * block_size(count) : krylov_dimension(count);
+  return pencil.size() > kDense && basis <= pencil.size() - pencil.n_zero() - kSpareDimensions;
+}
+
+void check_basis(const Pencil& pencil, Index count, double vectors) {
+  if (vectors * pencil.size() > kMaxEntries)
+    throw InvalidOption(
+        std::to_string(count) + " eigenpairs of " + std::to_string(pencil.size()) +
+        " unknowns take " + std::to_string(static_cast<Index>(vectors)) +
+        " vectors, more than 8 GB; ask for at most " +
+        std::to_string(static_cast<Index>(kMaxEntries / pencil.size() / vectors * count)));
+}
+
+/// The `count` pairs after the zero modes, by a factorisation.
+void solve_by_factorisation(Pencil& pencil, Index count, const EigenOptions& options,
+                            EigenPairs& result, Matrix& vectors) {
+  pencil.factorise();
+  result.method = EigenMethod::Cholesky;
+  result.factor = pencil.factor_info();
+  if (count == 0) return;
+  const Index n = pencil.size();
+  if (!fits_iteration(pencil, count, EigenMethod::Cholesky)) {
     if (n > kMaxDense)
       throw InvalidOption(std::to_string(count) + " eigenpairs of " + std::to_string(n) +
                           " unknowns; above " + std::to_string(kMaxDense) +
-                          " unknowns at most about two thirds of the spectrum can be had");
-    solve_dense(pencil, count, values, vectors);
-    return 0;
+                          " unknowns at most about half of the spectrum can be had");
+    solve_dense(pencil, count, result.values, vectors);
+    return;
   }
-  if (static_cast<double>(subspace) * n > kMaxEntries)
-    throw InvalidOption(std::to_string(count) + " eigenpairs of " + std::to_string(n) +
-                        " unknowns take a basis of " + std::to_string(subspace) +
-                        " vectors, more than 8 GB; ask for at most " +
-                        std::to_string(static_cast<Index>(kMaxEntries / n / 1.5)));
-  LargestPairs pairs = largest_pairs(pencil, count);
-  values = pairs.values.cwiseInverse();
+  check_basis(pencil, count, krylov_dimension(count));
+  LargestPairs pairs = largest_pairs(pencil, count, options.progress);
+  result.bytes = 8 * (result.factor.nonzeros + std::int64_t{n} * krylov_dimension(count));
+  result.values = pairs.values.cwiseInverse();
   vectors = std::move(pairs.vectors);
-  return pairs.solves + refine(pencil, values, vectors);
+  result.solves = pairs.solves + refine(pencil, result.values, vectors);
+}
+
+/// The same by LOBPCG.
+void solve_by_iteration(Pencil& pencil, Index count, const EigenOptions& options,
+                        EigenPairs& result, Matrix& vectors) {
+  check_basis(pencil, count, kVectorsOfIteration * block_size(count));
+  pencil.build_multigrid(options.sparser);
+  LowestPairs pairs = lowest_pairs(pencil, count, options.progress);
+  result.method = EigenMethod::Iterative;
+  result.factor = pencil.factor_info();
+  // Multigrid is of single precision with its columns.
+  result.bytes = 8 * (result.factor.nonzeros + static_cast<std::int64_t>(kVectorsOfIteration) *
+                                                   pencil.size() * block_size(count));
+  result.values = std::move(pairs.values);
+  vectors = std::move(pairs.vectors);
+  result.iterations = pairs.iterations;
+  result.solves = pairs.applications;
+}
+
+std::string gigabytes(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f GB", bytes * 1e-9);
+  return text;
+}
+
+/// \return whether to iterate without a factorisation; result.reason says why
+bool choose_iteration(const Pencil& pencil, Index count, const EigenOptions& options,
+                      EigenPairs& result) {
+  const Index n = pencil.size();
+  const bool room = fits_iteration(pencil, count, EigenMethod::Iterative);
+  if (options.method != EigenMethod::Auto || !room) {
+    if (options.method != EigenMethod::Cholesky && !room)
+      result.reason = std::to_string(count) + " pairs of " + std::to_string(n) +
+                      " unknowns leave no room for an iteration";
+    return options.method == EigenMethod::Iterative && room;
+  }
+  const bool volume = options.dimension == 3;
+  const double fill = volume ? 45 * std::pow(n, 4.0 / 3) : 40.0 * n * std::log2(n);
+  const double bytes = fill * std::sqrt(static_cast<double>(pencil.s.nonZeros()) / n) +
+                       8.0 * n * krylov_dimension(count);
+  const double free = static_cast<double>(available_memory());
+  const std::string size =
+      std::to_string(n) + (volume ? " unknowns of a volume" : " unknowns of a surface");
+  if (free > 0 && bytes > kMemoryShare * free) {
+    result.reason = "a factor of " + size + " would take about " + gigabytes(bytes) + " of the " +
+                    gigabytes(free) + " that are free";
+    return true;
+  }
+  if (volume && n >= kIterativeFrom) {
+    result.reason = size + ": a factor costs more than the iteration";
+    return true;
+  }
+  result.reason = size + ": a factor of about " + gigabytes(bytes) + " pays";
+  return false;
 }
 
 /// Turns x so that its first large entry is positive. The bound is no value that symmetric modes
@@ -309,26 +454,48 @@ std::vector<Index> rows_that_take_part(const SparseMatrix& stiffness, const Spar
 
 }  // namespace
 
+const char* eigen_method_name(EigenMethod method) {
+  for (const auto& [known, name] : kNames)
+    if (known == method) return name;
+  return "";
+}
+
+EigenMethod eigen_method(const std::string& name) {
+  std::string known;
+  for (const auto& [method, its_name] : kNames) {
+    if (name == its_name) return method;
+    known.append(known.empty() ? "" : ", ").append(its_name);
+  }
+  throw InvalidOption("solver '" + name + "' is not known; known are: " + known);
+}
+
 EigenPairs smallest_eigenpairs(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count,
-                               const std::vector<bool>& fixed) {
+                               const std::vector<bool>& fixed, const EigenOptions& options) {
   check_arguments(stiffness, mass, fixed);
   std::vector<Index> rows = rows_that_take_part(stiffness, mass, fixed);
   if (count < 1 || static_cast<std::size_t>(count) > rows.size())
     throw InvalidOption(std::to_string(count) + " eigenpairs of " + std::to_string(rows.size()) +
                         " unknowns; ask for 1 to " + std::to_string(rows.size()));
-  Pencil pencil(stiffness, mass, std::move(rows));
+  Pencil pencil(stiffness, mass, std::move(rows), options.threads);
   pencil.check_mass();
-  pencil.factorise();
 
   EigenPairs result;
   result.zero_modes = pencil.n_zero();
-  result.factor = pencil.factor_info();
-  const Index n_zero = std::min(count, pencil.n_zero());
-  Vector values;
+  const Index n_zero = std::min(count, pencil.n_zero()), n_other = count - n_zero;
   Matrix vectors;
-  if (count > n_zero) result.solves = solve_nonzero(pencil, count - n_zero, values, vectors);
+  bool found = false;
+  if (n_other > 0 && choose_iteration(pencil, n_other, options, result)) try {
+      solve_by_iteration(pencil, n_other, options, result, vectors);
+      found = true;
+    } catch (const SolverFailure& failure) {
+      if (options.method != EigenMethod::Auto) throw;
+      // The factorisation judges, and names the row.
+      result.reason = "no iteration: " + std::string(failure.what());
+    }
+  if (!found) solve_by_factorisation(pencil, n_other, options, result, vectors);
+  const Vector values = std::move(result.values);
   result.values = Vector::Zero(count);
-  result.values.tail(count - n_zero) = values;
+  result.values.tail(n_other) = values;
   result.residuals.resize(count);
   result.vectors.setZero(stiffness.rows(), count);
   for (Index k = 0; k < count; ++k) {

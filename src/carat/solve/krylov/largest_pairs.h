@@ -1,6 +1,8 @@
 #pragma once
 // The largest eigenpairs of an inverse, none missing.
 
+#include <functional>
+
 #include "carat/base/types.h"
 
 namespace carat {
@@ -28,15 +30,17 @@ struct LargestPairs {
 /// Number of basis vectors that are held for so many pairs.
 Index krylov_dimension(Index wanted);
 
-/// A x = theta x by Lanczos iterations with implicit restarts, complete clusters included.
+/// A x = theta x by a block Lanczos iteration with thick restarts [Wu, Simon 2000], complete
+/// clusters included.
 ///
-/// A Krylov space of one vector shows one member of every cluster, and others as late as rounding
-/// brings them in. So rounds are repeated from random vectors in the complement of all pairs found
-/// until one shows that nothing is left that comes before the last wanted pair. To see that takes a
-/// few solves, as it asks for one rough pair alone.
+/// A Krylov space of a random block shows as many members of a cluster as the block has columns.
+/// Where a cluster has as many, rounds are repeated from random blocks in the complement of all
+/// pairs found, until one shows that nothing is left that comes before the last wanted pair.
 ///
-/// \param wanted  krylov_dimension(wanted) must not exceed the dimension of the subspace
+/// \param wanted    krylov_dimension(wanted) must not exceed the dimension of the subspace
+/// \param progress  called with the number of pairs that have converged; may throw to end it
 /// \throws SolverFailure  no convergence, or M is not definite
-LargestPairs largest_pairs(const InverseOperator& op, Index wanted);
+LargestPairs largest_pairs(const InverseOperator& op, Index wanted,
+                           const std::function<void(Index)>& progress = {});
 
 }  // namespace carat
