@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -35,8 +36,8 @@ constexpr double kVectorsOfIteration = 13;
 constexpr Index kIterativeFrom = 150000;
 /// Part of the free memory that a factor may take.
 constexpr double kMemoryShare = 0.5;
-// Residuals beyond this are worth as many solves as there are pairs.
-constexpr double kGoodResidual = 1e-9;
+// Vectors of a residual beyond this are worth one more solve.
+constexpr double kGoodResidual = 1e-10;
 // 1^T S 1 / sum |S_ij| of constants that S annihilates: rounding leaves about 1e-16.
 constexpr double kZeroEnergy = 1e-12;
 
@@ -301,14 +302,19 @@ double residual_of(const Pencil& pencil, double value, const Vector& x) {
 /// vectors as rough noise; one more application of S^-1 M alone damps it.
 /// \return number of right-hand sides solved for
 Index refine(const Pencil& pencil, const Vector& values, Matrix& vectors) {
-  double worst = 0;
-  for (Eigen::Index k = 0; k < values.size(); ++k)
-    worst = std::max(worst, residual_of(pencil, values[k], vectors.col(k)));
-  if (worst <= kGoodResidual) return 0;
-  constexpr Eigen::Index kAtOnce = 8;
-  for (Eigen::Index k = 0; k < values.size(); k += kAtOnce) {
-    auto some = vectors.middleCols(k, std::min(kAtOnce, values.size() - k));
-    some = pencil.solve(pencil.mass_product(some)) * values.segment(k, some.cols()).asDiagonal();
+  std::vector<Index> bad;
+  for (Index k = 0; k < values.size(); ++k)
+    if (!(residual_of(pencil, values[k], vectors.col(k)) <= kGoodResidual)) bad.push_back(k);
+  if (bad.empty()) return 0;
+  constexpr std::size_t kAtOnce = 8;
+  for (std::size_t first = 0; first < bad.size(); first += kAtOnce) {
+    const std::span<const Index> some(&bad[first], std::min(kAtOnce, bad.size() - first));
+    Matrix x(pencil.size(), static_cast<Eigen::Index>(some.size()));
+    for (std::size_t k = 0; k < some.size(); ++k)
+      x.col(static_cast<Eigen::Index>(k)) = values[some[k]] * vectors.col(some[k]);
+    x = pencil.solve(pencil.mass_product(x));
+    for (std::size_t k = 0; k < some.size(); ++k)
+      vectors.col(some[k]) = x.col(static_cast<Eigen::Index>(k));
   }
   const Matrix gram = vectors.transpose() * pencil.mass_product(vectors);
   const Eigen::LLT<Matrix> factor(gram);
@@ -317,7 +323,7 @@ Index refine(const Pencil& pencil, const Vector& values, Matrix& vectors) {
         "eigenpairs: the vectors depend on each other; the matrices are too "
         "ill-conditioned, look for degenerate elements");
   factor.matrixU().solveInPlace<Eigen::OnTheRight>(vectors);
-  return static_cast<Index>(values.size());
+  return static_cast<Index>(bad.size());
 }
 
 /// Whether a block iteration has room beside so many pairs.
