@@ -279,14 +279,14 @@ TEST(EigenSolver, iteration_factorisation_and_dense_method_agree) {
   for (const Index count : {2, 7, 24, 40}) {
     SCOPED_TRACE(count);
     const EigenPairs lanczos = smallest_eigenpairs(d.stiffness, d.mass, count, {}, kCholesky);
-    const EigenPairs lobpcg = smallest_eigenpairs(d.stiffness, d.mass, count, {}, kIterative);
+    const EigenPairs iterated = smallest_eigenpairs(d.stiffness, d.mass, count, {}, kIterative);
     EXPECT_EQ(lanczos.method, EigenMethod::Cholesky);
-    EXPECT_EQ(lobpcg.method, EigenMethod::Iterative);
+    EXPECT_EQ(iterated.method, EigenMethod::Iterative);
     EXPECT_EQ(lanczos.iterations, 0);
-    EXPECT_GT(lobpcg.iterations, 0);
-    EXPECT_GT(lobpcg.bytes, 0);
+    EXPECT_GT(iterated.iterations, 0);
+    EXPECT_GT(iterated.bytes, 0);
     const Vector scale = all.values.segment(1, count - 1);
-    for (const EigenPairs* const pairs : {&lanczos, &lobpcg}) {
+    for (const EigenPairs* const pairs : {&lanczos, &iterated}) {
       EXPECT_LT(((pairs->values.tail(count - 1) - scale).array() / scale.array()).abs().maxCoeff(),
                 1e-12);
       expect_sound(*pairs, d.mass);
@@ -295,7 +295,7 @@ TEST(EigenSolver, iteration_factorisation_and_dense_method_agree) {
   }
 }
 
-TEST(EigenSolver, iteration_finds_clusters_of_more_members_than_a_block_of_lanczos) {
+TEST(EigenSolver, iteration_finds_clusters_of_more_members_than_a_block) {
   // The hypercube: 2 k, binomial(9, k) times.
   SparseMatrix cube(512, 512);
   for (Index i = 0; i < 512; ++i) {
@@ -340,8 +340,7 @@ TEST(EigenSolver, iteration_that_does_not_converge_tells_its_course) {
     smallest_eigenpairs(d.stiffness, d.mass, 10, {}, options);
     FAIL() << "converged";
   } catch (const SolverFailure& failure) {
-    EXPECT_NE(std::string(failure.what()).find("residuals by iteration"), std::string::npos)
-        << failure.what();
+    EXPECT_NE(std::string(failure.what()).find("residual"), std::string::npos) << failure.what();
   }
 }
 

@@ -106,7 +106,7 @@ TEST(Eigenmodes, iteration_finds_all_waves_of_a_cube) {
     const EigenPairs direct = eigenmodes(d, count, {}, {.method = EigenMethod::Cholesky});
     EXPECT_EQ(few.method, EigenMethod::Iterative);
     EXPECT_LT((few.values - direct.values).cwiseAbs().maxCoeff(), 1e-11 * few.values[count - 1]);
-    EXPECT_LT(few.residuals.maxCoeff(), 3.1e-10);  // where the iteration stops
+    EXPECT_LT(few.residuals.maxCoeff(), 1e-10);
   }
 }
 
@@ -115,10 +115,11 @@ TEST(Eigenmodes, torus_and_sphere_by_iteration_have_their_clusters) {
     SCOPED_TRACE(family);
     const PolygonMesh mesh = generate_mesh(family, {.level = 3});
     const Discretization d = discretize(mesh, "diamond", kMatrices);
-    const EigenPairs lobpcg = eigenmodes(d, 26, {}, {.method = EigenMethod::Iterative});
+    const EigenPairs iterated = eigenmodes(d, 26, {}, {.method = EigenMethod::Iterative});
     const EigenPairs lanczos = eigenmodes(d, 26, {}, {.method = EigenMethod::Cholesky});
-    EXPECT_LT((lobpcg.values - lanczos.values).cwiseAbs().maxCoeff(), 1e-11 * lobpcg.values[25]);
-    EXPECT_EQ(multiplicities(lobpcg.values, 1e-6), multiplicities(lanczos.values, 1e-6));
+    EXPECT_LT((iterated.values - lanczos.values).cwiseAbs().maxCoeff(),
+              1e-11 * iterated.values[25]);
+    EXPECT_EQ(multiplicities(iterated.values, 1e-6), multiplicities(lanczos.values, 1e-6));
   }
 }
 

@@ -47,6 +47,29 @@ Index iterations_on(const Mesh& mesh) {
   return iterations(d.stiffness, multigrid, rough(mesh.n_vertices()), fixed);
 }
 
+/// The columns of a block do not see each other.
+TEST(Multigrid, blocks_are_single_vectors_to_the_last_bit) {
+  const PolygonMesh mesh = generate_mesh("plane-quads", {.level = 4, .jitter = 0.2});
+  const SparseMatrix a = discretize(mesh).stiffness;
+  const std::vector<bool> fixed = boundary_vertices(mesh);
+  const Multigrid multigrid(a, fixed, 1);
+  const Index n = mesh.n_vertices();
+  for (const Index k : {1, 2, 7, 11}) {
+    Vector block(Eigen::Index{n} * k), result;
+    for (Index c = 0; c < k; ++c)
+      for (Index i = 0; i < n; ++i)
+        block[Eigen::Index{i} * k + c] = c == 1 ? 0 : std::pow(1e3, c) * std::sin(1e3 * (i + c));
+    multigrid.apply_block(block, result, k);
+    for (Index c = 0; c < k; ++c) {
+      Vector one(n), alone;
+      for (Index i = 0; i < n; ++i) one[i] = block[Eigen::Index{i} * k + c];
+      multigrid.apply(one, alone);
+      for (Index i = 0; i < n; ++i) ASSERT_EQ(result[Eigen::Index{i} * k + c], alone[i]) << c;
+      EXPECT_EQ(alone.isZero(0), c == 1);
+    }
+  }
+}
+
 TEST(Multigrid, threads_change_no_bit) {
   const PolygonMesh mesh = generate_mesh("plane-voronoi", {.level = 4, .jitter = 0.2});
   const SparseMatrix a = discretize(mesh).stiffness;

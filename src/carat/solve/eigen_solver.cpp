@@ -14,9 +14,8 @@
 
 #include "carat/base/error.h"
 #include "carat/solve/krylov/largest_pairs.h"
-#include "carat/solve/krylov/lowest_pairs.h"
 #include "carat/solve/krylov/products.h"
-#include "carat/solve/multigrid.h"
+#include "carat/solve/spd_solver.h"
 
 namespace carat {
 namespace {
@@ -29,11 +28,8 @@ constexpr Index kMaxDense = 3000;
 constexpr Index kSpareDimensions = 32;
 // The largest basis, 8 GB; a restart copies most of it.
 constexpr double kMaxEntries = 1e9;
-// Vectors a vector of a block that LOBPCG holds: three blocks and their products, two while they
-// are replaced.
-constexpr double kVectorsOfIteration = 13;
-// Where LOBPCG becomes faster in volumes.
-constexpr Index kIterativeFrom = 150000;
+// Where solving by conjugate gradients becomes faster in volumes.
+constexpr Index kIterativeFrom = 50000;
 /// Part of the free memory that a factor may take.
 constexpr double kMemoryShare = 0.5;
 // Vectors of a residual beyond this are worth one more solve.
@@ -68,7 +64,7 @@ SparseMatrix restrict_to(const SparseMatrix& matrix, const std::vector<Index>& k
 
 /// S x = lambda M x over the rows that take part, with the null vectors of S that are known: the
 /// indicators of floating components.
-class Pencil final : public InverseOperator, public PreconditionedPencil {
+class Pencil final : public InverseOperator {
  public:
   Pencil(const SparseMatrix& stiffness, const SparseMatrix& mass, std::vector<Index> kept,
          int threads)
@@ -100,15 +96,18 @@ class Pencil final : public InverseOperator, public PreconditionedPencil {
     return sparse_product(m, x, threads_);
   }
 
-  Matrix stiffness_product(const Eigen::Ref<const Matrix>& x) const override {
-    return sparse_product(s, x, threads_);
-  }
-
   void project(Matrix& x) const override { take_out_constants(x, row_mass_, ones_); }
 
   Matrix solve(Matrix b) const override {
     take_out_constants(b, ones_, row_mass_);
-    Matrix x = solver_->solve(b);
+    Matrix x;
+    if (factor_) {
+      x = factor_->solve(b);
+    } else {
+      SolveReport report;
+      x = iteration_->solve(b, &report);
+      iterations_ += report.iterations;
+    }
     project(x);
     return x;
   }
@@ -116,7 +115,7 @@ class Pencil final : public InverseOperator, public PreconditionedPencil {
   void factorise() {
     const std::vector<bool> held = grounds();
     try {
-      solver_ = std::make_unique<Cholesky>(s, held);
+      factor_ = std::make_unique<Cholesky>(s, held);
     } catch (const SolverFailure& failure) {
       if (failure.elements().empty()) throw;
       const Index row = rows[failure.elements()[0]];
@@ -128,36 +127,23 @@ class Pencil final : public InverseOperator, public PreconditionedPencil {
     }
   }
   FactorInfo factor_info() const {
-    if (solver_) return solver_->info();
+    if (factor_) return factor_->info();
     FactorInfo info;
-    info.method = "LOBPCG, multigrid";
-    info.nonzeros = preconditioner_->nonzeros();
-    info.factor_seconds = multigrid_seconds_;
+    info.method = iteration_->info().method;
+    info.nonzeros = iteration_->info().nonzeros;
+    info.factor_seconds = iteration_->info().seconds;
     return info;
   }
+  Index iterations() const { return iterations_; }
 
-  /// \param sparser  empty: of S itself
-  void build_multigrid(const std::function<SparseMatrix()>& sparser) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::vector<bool> held = grounds();
-    if (sparser) try {
-        preconditioner_ = std::make_unique<Multigrid>(restrict_to(sparser(), rows), held);
-      } catch (const SolverFailure&) {
-        // Not definite where S may be.
-      }
-    if (!preconditioner_) preconditioner_ = std::make_unique<Multigrid>(s, held);
-    multigrid_seconds_ =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  }
-  Matrix precondition(const Matrix& r) const override {
-    Matrix x(r.rows(), r.cols());
-    Vector one;
-    for (Eigen::Index k = 0; k < r.cols(); ++k) {
-      preconditioner_->apply(r.col(k), one);
-      x.col(k) = one;
-    }
-    project(x);
-    return x;
+  /// Solves by conjugate gradients from now on.
+  void prepare_iteration(const EigenOptions& options) {
+    SolverOptions wanted{
+        .kind = SolverKind::Multigrid, .dimension = options.dimension, .threads = options.threads};
+    if (options.sparser) wanted.sparser = [&] { return restrict_to(options.sparser(), rows); };
+    // The matrix is a member, and so outlives the solver.
+    iteration_ = std::make_unique<SpdSolver>(
+        std::shared_ptr<const SparseMatrix>(std::shared_ptr<void>(), &s), grounds(), wanted);
   }
 
   /// Every floating component is held at one row: right-hand sides in the range of S ask nothing
@@ -199,9 +185,9 @@ class Pencil final : public InverseOperator, public PreconditionedPencil {
   Vector ones_, row_mass_;
   std::vector<double> measure_;
   bool all_float_as_one_ = false;
-  std::unique_ptr<Cholesky> solver_;
-  std::unique_ptr<Multigrid> preconditioner_;
-  double multigrid_seconds_ = 0;
+  std::unique_ptr<Cholesky> factor_;
+  std::unique_ptr<SpdSolver> iteration_;
+  mutable Index iterations_ = 0;
   int threads_;
 };
 
@@ -327,60 +313,51 @@ Index refine(const Pencil& pencil, const Vector& values, Matrix& vectors) {
 }
 
 /// Whether a block iteration has room beside so many pairs.
-bool fits_iteration(const Pencil& pencil, Index count, EigenMethod method) {
-  const Index basis =
-      method == EigenMethod::Iterative ? 3 * block_size(count) : krylov_dimension(count);
-  return pencil.size() > kDense && basis <= pencil.size() - pencil.n_zero() - kSpareDimensions;
+bool fits_iteration(const Pencil& pencil, Index count) {
+  return pencil.size() > kDense &&
+         krylov_dimension(count) <= pencil.size() - pencil.n_zero() - kSpareDimensions;
 }
 
-void check_basis(const Pencil& pencil, Index count, double vectors) {
-  if (vectors * pencil.size() > kMaxEntries)
-    throw InvalidOption(
-        std::to_string(count) + " eigenpairs of " + std::to_string(pencil.size()) +
-        " unknowns take " + std::to_string(static_cast<Index>(vectors)) +
-        " vectors, more than 8 GB; ask for at most " +
-        std::to_string(static_cast<Index>(kMaxEntries / pencil.size() / vectors * count)));
+/// The `count` pairs after the zero modes, by the inverse that the pencil has been given.
+void solve_by_lanczos(const Pencil& pencil, Index count, const EigenOptions& options,
+                      EigenPairs& result, Matrix& vectors) {
+  const Index n = pencil.size(), basis = krylov_dimension(count);
+  if (static_cast<double>(basis) * n > kMaxEntries)
+    throw InvalidOption(std::to_string(count) + " eigenpairs of " + std::to_string(n) +
+                        " unknowns take " + std::to_string(basis) +
+                        " vectors, more than 8 GB; ask for at most " +
+                        std::to_string(static_cast<Index>(kMaxEntries / n / basis * count)));
+  LargestPairs pairs = largest_pairs(pencil, count, options.progress);
+  result.bytes = 8 * (result.factor.nonzeros + std::int64_t{n} * basis);
+  result.values = pairs.values.cwiseInverse();
+  vectors = std::move(pairs.vectors);
+  result.solves = pairs.solves + refine(pencil, result.values, vectors);
+  result.iterations = pencil.iterations();
 }
 
-/// The `count` pairs after the zero modes, by a factorisation.
 void solve_by_factorisation(Pencil& pencil, Index count, const EigenOptions& options,
                             EigenPairs& result, Matrix& vectors) {
   pencil.factorise();
   result.method = EigenMethod::Cholesky;
   result.factor = pencil.factor_info();
   if (count == 0) return;
-  const Index n = pencil.size();
-  if (!fits_iteration(pencil, count, EigenMethod::Cholesky)) {
-    if (n > kMaxDense)
-      throw InvalidOption(std::to_string(count) + " eigenpairs of " + std::to_string(n) +
-                          " unknowns; above " + std::to_string(kMaxDense) +
-                          " unknowns at most about half of the spectrum can be had");
-    solve_dense(pencil, count, result.values, vectors);
+  if (fits_iteration(pencil, count)) {
+    solve_by_lanczos(pencil, count, options, result, vectors);
     return;
   }
-  check_basis(pencil, count, krylov_dimension(count));
-  LargestPairs pairs = largest_pairs(pencil, count, options.progress);
-  result.bytes = 8 * (result.factor.nonzeros + std::int64_t{n} * krylov_dimension(count));
-  result.values = pairs.values.cwiseInverse();
-  vectors = std::move(pairs.vectors);
-  result.solves = pairs.solves + refine(pencil, result.values, vectors);
+  if (pencil.size() > kMaxDense)
+    throw InvalidOption(std::to_string(count) + " eigenpairs of " + std::to_string(pencil.size()) +
+                        " unknowns; above " + std::to_string(kMaxDense) +
+                        " unknowns at most about half of the spectrum can be had");
+  solve_dense(pencil, count, result.values, vectors);
 }
 
-/// The same by LOBPCG.
 void solve_by_iteration(Pencil& pencil, Index count, const EigenOptions& options,
                         EigenPairs& result, Matrix& vectors) {
-  check_basis(pencil, count, kVectorsOfIteration * block_size(count));
-  pencil.build_multigrid(options.sparser);
-  LowestPairs pairs = lowest_pairs(pencil, count, options.progress);
+  pencil.prepare_iteration(options);
   result.method = EigenMethod::Iterative;
   result.factor = pencil.factor_info();
-  // Multigrid is of single precision with its columns.
-  result.bytes = 8 * (result.factor.nonzeros + static_cast<std::int64_t>(kVectorsOfIteration) *
-                                                   pencil.size() * block_size(count));
-  result.values = std::move(pairs.values);
-  vectors = std::move(pairs.vectors);
-  result.iterations = pairs.iterations;
-  result.solves = pairs.applications;
+  solve_by_lanczos(pencil, count, options, result, vectors);
 }
 
 std::string gigabytes(double bytes) {
@@ -393,7 +370,7 @@ std::string gigabytes(double bytes) {
 bool choose_iteration(const Pencil& pencil, Index count, const EigenOptions& options,
                       EigenPairs& result) {
   const Index n = pencil.size();
-  const bool room = fits_iteration(pencil, count, EigenMethod::Iterative);
+  const bool room = fits_iteration(pencil, count);
   if (options.method != EigenMethod::Auto || !room) {
     if (options.method != EigenMethod::Cholesky && !room)
       result.reason = std::to_string(count) + " pairs of " + std::to_string(n) +
@@ -401,9 +378,9 @@ bool choose_iteration(const Pencil& pencil, Index count, const EigenOptions& opt
     return options.method == EigenMethod::Iterative && room;
   }
   const bool volume = options.dimension == 3;
-  const double fill = volume ? 45 * std::pow(n, 4.0 / 3) : 40.0 * n * std::log2(n);
-  const double bytes = fill * std::sqrt(static_cast<double>(pencil.s.nonZeros()) / n) +
-                       8.0 * n * krylov_dimension(count);
+  const double bytes =
+      factor_bytes(n, static_cast<double>(pencil.s.nonZeros()), options.dimension) +
+      8.0 * n * krylov_dimension(count);
   const double free = static_cast<double>(available_memory());
   const std::string size =
       std::to_string(n) + (volume ? " unknowns of a volume" : " unknowns of a surface");
@@ -413,7 +390,7 @@ bool choose_iteration(const Pencil& pencil, Index count, const EigenOptions& opt
     return true;
   }
   if (volume && n >= kIterativeFrom) {
-    result.reason = size + ": a factor costs more than the iteration";
+    result.reason = size + ": a factor costs more than iterations in its place";
     return true;
   }
   result.reason = size + ": a factor of about " + gigabytes(bytes) + " pays";

@@ -14,7 +14,7 @@ namespace carat {
 enum class EigenMethod {
   Auto,       ///< chosen by dimension, size and memory
   Cholesky,   ///< block Lanczos on S^-1 M, by a factorisation of S
-  Iterative,  ///< LOBPCG with multigrid, no factorisation; residuals up to 3e-10
+  Iterative,  ///< the same by conjugate gradients with multigrid in place of the factorisation
 };
 
 /// "auto", "cholesky", "iterative".
@@ -46,8 +46,8 @@ struct EigenPairs {
   Index zero_modes = 0;
   EigenMethod method = EigenMethod::Cholesky;  ///< what was chosen
   std::string reason;                          ///< why; empty where the caller chose
-  Index iterations = 0;                        ///< of the iterative method
-  /// Right-hand sides that were solved for, or preconditioned; 0: dense method.
+  Index iterations = 0;                        ///< of conjugate gradients, over all blocks
+  /// Right-hand sides that were solved for; 0: dense method.
   Index solves = 0;
   /// Of the factor or multigrid and of all vectors held at a time, without the matrices.
   std::int64_t bytes = 0;
@@ -59,10 +59,9 @@ struct EigenPairs {
 /// S symmetric positive semidefinite, M symmetric positive definite. Rows in which both have no
 /// entry take no part. The constants of floating components are known beforehand and taken out of
 /// the problem, so that S is inverted where it is definite and no shift has to be chosen. The rest
-/// is found by blocks, by either method: see EigenMethod. No member of a cluster is missed: the
-/// blocks of LOBPCG are larger than the number of pairs, and where a cluster has as many members as
-/// the blocks of Lanczos have columns, that starts afresh in the complement of what was found until
-/// nothing below the last pair is left. Where Auto chose the iterative method and it does not
+/// is found by a block Lanczos iteration on S^-1 M. No member of a cluster is missed: where one has
+/// as many members as a block has columns, it starts afresh in the complement of what was found
+/// until nothing below the last pair is left. Where Auto chose conjugate gradients and they do not
 /// converge, a factorisation takes over. The result is the same in every run.
 ///
 /// \param fixed  empty, or one flag a row: rows and columns to leave out (Dirichlet)
@@ -71,9 +70,8 @@ struct EigenPairs {
 ///                        not agree
 /// \throws SolverFailure  S is not semidefinite, with a kernel beyond the constants, M is not
 ///                        definite, values that are not finite, no convergence
-/// Cost: one factorisation of S and about 3 to 5 solves a pair, in blocks of 8, more for few pairs
-/// or many equal ones, and memory O(nnz of the factor + 2 n * count); or 15 to 30 iterations, and
-/// memory O(13 n * count).
+/// Cost: one factorisation or multigrid of S and about 3 to 5 solves a pair, in blocks of 8, more
+/// for few pairs or many equal ones; memory O(nnz of the factor + 2 n * count).
 EigenPairs smallest_eigenpairs(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count,
                                const std::vector<bool>& fixed = {},
                                const EigenOptions& options = {});

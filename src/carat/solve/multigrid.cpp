@@ -2,10 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "carat/base/column_blocks.h"
 #include "carat/base/error.h"
 #include "carat/solve/multigrid/coarsening.h"
 #include "carat/solve/reduction.h"
@@ -21,10 +23,42 @@ constexpr Index kCoarsest = 300;
 /// Where coarsening stalls, up to so many rows are still solved exactly.
 constexpr Index kLargestDense = 2000;
 
+/// The values of one row.
+template <Index kWidth>
+using Sums = std::array<Real, kWidth>;
+
+template <Index kWidth>
+Sums<kWidth> load(const Array<Real>& values, Index row) {
+  Sums<kWidth> sums;
+  for (Index c = 0; c < kWidth; ++c) sums[c] = values[row * kWidth + c];
+  return sums;
+}
+template <std::size_t kWidth>
+void store(const std::array<Real, kWidth>& sums, Array<Real>& values, Index row) {
+  for (std::size_t c = 0; c < kWidth; ++c) values[row * kWidth + c] = sums[c];
+}
+
+/// sums += sign * (entries [begin, end) of a row) x.
+template <int kSign, std::size_t kWidth>
+void add_row(std::array<Real, kWidth>& sums, const Rows& rows, Index begin, Index end,
+             const Array<Real>& x) {
+  for (Index k = begin; k < end; ++k) {
+    const Real value = kSign * rows.values[k];
+    const Real* const from = x.data() + rows.columns[k] * static_cast<Index>(kWidth);
+    for (std::size_t c = 0; c < kWidth; ++c) sums[c] += value * from[c];
+  }
+}
+template <std::size_t kWidth>
+void subtract(std::array<Real, kWidth>& sums, const Rows& rows, Index begin, Index end,
+              const Array<Real>& x) {
+  add_row<-1>(sums, rows, begin, end, x);
+}
+
 /// One level of a cycle.
 struct Level : multigrid::LevelMatrices {
   Array<Index> middle;  // row -> its first entry to the right of the diagonal
   Array<Real> inverse_diagonal;
+  // Of as many vectors as advance together, the values of a row side by side.
   mutable Array<Real> x, b, residual;
 
   explicit Level(multigrid::LevelMatrices&& matrices)
@@ -33,9 +67,6 @@ struct Level : multigrid::LevelMatrices {
     const auto count = static_cast<std::size_t>(n);
     inverse_diagonal.resize(count);
     middle.resize(count);
-    x.resize(count);
-    b.resize(count);
-    residual.resize(count);
     for (Index i = 0; i < n; ++i) {
       inverse_diagonal[i] = 1 / diagonal[i];
       Index k = matrix.offsets[i];
@@ -44,31 +75,34 @@ struct Level : multigrid::LevelMatrices {
     }
   }
 
+  void reserve(Index width) const {
+    const std::size_t count = diagonal.size() * static_cast<std::size_t>(width);
+    for (Array<Real>* const values : {&x, &b, &residual})
+      if (values->size() < count) values->resize(count);
+  }
+
   // Gauss-Seidel from x = 0, which needs the lower triangle; what is left of b then is the upper
   // one's part.
+  template <Index kWidth>
   void smooth_forwards() const {
     const Index n = size();
-    const Index* const columns = matrix.columns.data();
-    const Real* const values = matrix.values.data();
     for (Index i = 0; i < n; ++i) {
-      Real sum = b[i];
-      for (Index k = matrix.offsets[i]; k < middle[i]; ++k) sum -= values[k] * x[columns[k]];
-      x[i] = sum * inverse_diagonal[i];
+      Sums<kWidth> sum = load<kWidth>(b, i);
+      subtract(sum, matrix, matrix.offsets[i], middle[i], x);
+      for (Index c = 0; c < kWidth; ++c) x[i * kWidth + c] = sum[c] * inverse_diagonal[i];
     }
     for (Index i = 0; i < n; ++i) {
-      Real sum = 0;
-      for (Index k = middle[i]; k < matrix.offsets[i + 1]; ++k) sum -= values[k] * x[columns[k]];
-      residual[i] = sum;
+      Sums<kWidth> sum{};
+      subtract(sum, matrix, middle[i], matrix.offsets[i + 1], x);
+      store(sum, residual, i);
     }
   }
+  template <Index kWidth>
   void smooth_backwards() const {
-    const Index* const columns = matrix.columns.data();
-    const Real* const values = matrix.values.data();
     for (Index i = size() - 1; i >= 0; --i) {
-      Real sum = b[i];
-      for (Index k = matrix.offsets[i]; k < matrix.offsets[i + 1]; ++k)
-        sum -= values[k] * x[columns[k]];
-      x[i] = sum * inverse_diagonal[i];
+      Sums<kWidth> sum = load<kWidth>(b, i);
+      subtract(sum, matrix, matrix.offsets[i], matrix.offsets[i + 1], x);
+      for (Index c = 0; c < kWidth; ++c) x[i * kWidth + c] = sum[c] * inverse_diagonal[i];
     }
   }
 };
@@ -150,41 +184,70 @@ struct Multigrid::Impl {
     coarse_values.resize(n);
   }
 
+  template <Index kWidth>
   void cycle(std::size_t number) const {
     const Level& level = levels[number];
     if (number + 1 == levels.size()) {
-      solve_last(level);
+      solve_last<kWidth>(level);
       return;
     }
-    level.smooth_forwards();
+    level.smooth_forwards<kWidth>();
     const Level& coarse = levels[number + 1];
     const Rows& r = level.restriction;
     for (Index i = 0; i < coarse.size(); ++i) {
-      Real sum = 0;
-      for (Index k = r.offsets[i]; k < r.offsets[i + 1]; ++k)
-        sum += r.values[k] * level.residual[r.columns[k]];
-      coarse.b[i] = sum;
+      Sums<kWidth> sum{};
+      add_row<1>(sum, r, r.offsets[i], r.offsets[i + 1], level.residual);
+      store(sum, coarse.b, i);
     }
-    cycle(number + 1);
+    cycle<kWidth>(number + 1);
     const Rows& p = level.prolongation;
     for (Index i = 0; i < level.size(); ++i) {
-      Real sum = level.x[i];
-      for (Index k = p.offsets[i]; k < p.offsets[i + 1]; ++k)
-        sum += p.values[k] * coarse.x[p.columns[k]];
-      level.x[i] = sum;
+      Sums<kWidth> sum = load<kWidth>(level.x, i);
+      add_row<1>(sum, p, p.offsets[i], p.offsets[i + 1], coarse.x);
+      store(sum, level.x, i);
     }
-    level.smooth_backwards();
+    level.smooth_backwards<kWidth>();
   }
 
+  template <Index kWidth>
   void solve_last(const Level& level) const {
     if (!solves_coarsest) {
-      level.smooth_forwards();
-      level.smooth_backwards();
+      level.smooth_forwards<kWidth>();
+      level.smooth_backwards<kWidth>();
       return;
     }
-    for (Index i = 0; i < level.size(); ++i) coarse_values[i] = level.b[i];
-    coarsest.solveInPlace(coarse_values);
-    for (Index i = 0; i < level.size(); ++i) level.x[i] = static_cast<Real>(coarse_values[i]);
+    for (Index c = 0; c < kWidth; ++c) {
+      for (Index i = 0; i < level.size(); ++i) coarse_values[i] = level.b[i * kWidth + c];
+      coarsest.solveInPlace(coarse_values);
+      for (Index i = 0; i < level.size(); ++i)
+        level.x[i * kWidth + c] = static_cast<Real>(coarse_values[i]);
+    }
+  }
+
+  /// Columns [first, first + kWidth) of k vectors.
+  template <Index kWidth>
+  void apply(const Vector& r, Vector& z, Index k, Index first) const {
+    const std::vector<Index>& kept = reduction.kept;
+    std::array<double, kWidth> largest{};
+    for (const Index row : kept)
+      for (Index c = 0; c < kWidth; ++c)
+        largest[c] = std::max(largest[c], std::abs(r[Eigen::Index{row} * k + first + c]));
+    std::array<double, kWidth> to_one, back;
+    for (Index c = 0; c < kWidth; ++c) {
+      to_one[c] = largest[c] > 0 ? 1 / largest[c] : 0;
+      back[c] = largest[c] / scale;
+    }
+    for (const Level& level : levels) level.reserve(kWidth);
+    const Level& level = levels.front();
+    for (Index i = 0; i < level.size(); ++i)
+      for (Index c = 0; c < kWidth; ++c)
+        level.b[i * kWidth + c] =
+            static_cast<Real>(r[Eigen::Index{kept[i]} * k + first + c] * to_one[c]);
+    cycle<kWidth>(0);
+    for (Index i = 0; i < level.size(); ++i)
+      for (Index c = 0; c < kWidth; ++c)
+        z[Eigen::Index{kept[i]} * k + first + c] =
+            back[c] * static_cast<double>(level.x[i * kWidth + c]);
   }
 };
 
@@ -193,18 +256,12 @@ Multigrid::Multigrid(const SparseMatrix& matrix, const std::vector<bool>& fixed,
 
 Multigrid::~Multigrid() = default;
 
-void Multigrid::apply(const Vector& r, Vector& z) const {
+void Multigrid::apply(const Vector& r, Vector& z) const { apply_block(r, z, 1); }
+
+void Multigrid::apply_block(const Vector& r, Vector& z, Index k) const {
   z.setZero(r.size());
-  const std::vector<Index>& kept = impl_->reduction.kept;
-  double largest = 0;
-  for (const Index row : kept) largest = std::max(largest, std::abs(r[row]));
-  if (!(largest > 0)) return;
-  const Level& level = impl_->levels.front();
-  const double to_one = 1 / largest;
-  for (Index i = 0; i < level.size(); ++i) level.b[i] = static_cast<Real>(r[kept[i]] * to_one);
-  impl_->cycle(0);
-  const double back = largest / impl_->scale;
-  for (Index i = 0; i < level.size(); ++i) z[kept[i]] = back * static_cast<double>(level.x[i]);
+  if (impl_->levels.empty()) return;
+  for_column_groups(k, [&](auto width, Index first) { impl_->apply<width()>(r, z, k, first); });
 }
 
 std::int64_t Multigrid::nonzeros() const {

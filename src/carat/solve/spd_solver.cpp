@@ -30,14 +30,6 @@ constexpr std::pair<SolverKind, const char*> kNames[] = {
     {SolverKind::SparserCholesky, "sparser-cholesky"},
 };
 
-/// Bytes of a Cholesky factor with its work space, fitted to CHOLMOD on meshes of all kinds, to a
-/// factor of two: nested dissection fills O(n log n) on surfaces and O(n^(4/3)) in volumes.
-double factor_bytes(Index n, double nonzeros, int dimension) {
-  const double size = std::max(2.0, static_cast<double>(n));
-  const double fill = dimension == 2 ? 40 * size * std::log2(size) : 45 * std::pow(size, 4.0 / 3);
-  return fill * std::sqrt(nonzeros / size);
-}
-
 std::string gigabytes(double bytes) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f GB", bytes * 1e-9);
@@ -105,6 +97,13 @@ SolverKind solver_kind(const std::string& name) {
     known.append(known.empty() ? "" : ", ").append(its_name);
   }
   throw InvalidOption("solver '" + name + "' is not known; known are: " + known);
+}
+
+double factor_bytes(Index n_unknowns, double nonzeros, int dimension) {
+  // Nested dissection fills O(n log n) on surfaces and O(n^(4/3)) in volumes.
+  const double n = std::max(2.0, static_cast<double>(n_unknowns));
+  const double fill = dimension == 2 ? 40 * n * std::log2(n) : 45 * std::pow(n, 4.0 / 3);
+  return fill * std::sqrt(nonzeros / n);
 }
 
 bool takes_iteration(const SolverOptions& options, Index n_unknowns) {

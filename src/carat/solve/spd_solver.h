@@ -41,6 +41,10 @@ struct SolverOptions {
 /// aside.
 bool takes_iteration(const SolverOptions& options, Index n_unknowns);
 
+/// Bytes of a Cholesky factor with its work space, fitted to CHOLMOD on meshes of all kinds, to a
+/// factor of two.
+double factor_bytes(Index n_unknowns, double nonzeros, int dimension);
+
 /// What was chosen, and what it cost to set up.
 struct SolverInfo {
   SolverKind kind = SolverKind::Cholesky;
