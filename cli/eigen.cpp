@@ -62,9 +62,8 @@ void report_pairs(Session& session, const EigenPairs& pairs) {
                       {"bytes", pairs.bytes}};
   session.say("solver: " + factor.method +
               (pairs.iterations > 0 ? ", " + count(pairs.iterations, "iteration") : "") + ", " +
-              count(pairs.solves, pairs.iterations > 0 ? "multigrid cycle" : "solve") + ", " +
-              text(1e-6 * static_cast<double>(pairs.bytes)) + " MB" +
-              (pairs.reason.empty() ? "" : " (" + pairs.reason + ")"));
+              count(pairs.solves, "solve") + ", " + text(1e-6 * static_cast<double>(pairs.bytes)) +
+              " MB" + (pairs.reason.empty() ? "" : " (" + pairs.reason + ")"));
 }
 
 template <class Data>
@@ -114,9 +113,9 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "(vertices), or a view (.html); without it nothing is\n"
                  "written");
   app.add_option("--solver", options->solver,
-                 "auto: a Cholesky factorisation of surfaces and small volumes,\n"
-                 "an iteration with multigrid for large ones. Others: cholesky,\n"
-                 "iterative")
+                 "auto: Lanczos with a Cholesky factorisation on surfaces and\n"
+                 "in small volumes, with conjugate gradients in large ones.\n"
+                 "Others: cholesky, iterative")
       ->type_name("NAME");
   declare_operator_options(app, options->discretization, Application::Eigenmodes);
   return [options](Session& session) { run(session, *options); };

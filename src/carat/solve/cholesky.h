@@ -26,8 +26,10 @@ class Cholesky {
  public:
   /// \param matrix  symmetric; entries above and below the diagonal must agree
   /// \param fixed   empty, or one flag a row: rows and columns to leave out
+  /// \param dimension  of the mesh, which tells the better ordering: 2 or 3; 0: several are tried
   /// \throws SolverFailure  not positive definite: names the row of the failing pivot
-  explicit Cholesky(const SparseMatrix& matrix, const std::vector<bool>& fixed = {});
+  explicit Cholesky(const SparseMatrix& matrix, const std::vector<bool>& fixed = {},
+                    int dimension = 0);
   ~Cholesky();
   Cholesky(Cholesky&&) noexcept;
   Cholesky& operator=(Cholesky&&) noexcept;

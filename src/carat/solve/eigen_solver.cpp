@@ -112,10 +112,10 @@ class Pencil final : public InverseOperator {
     return x;
   }
 
-  void factorise() {
+  void factorise(int dimension) {
     const std::vector<bool> held = grounds();
     try {
-      factor_ = std::make_unique<Cholesky>(s, held);
+      factor_ = std::make_unique<Cholesky>(s, held, dimension);
     } catch (const SolverFailure& failure) {
       if (failure.elements().empty()) throw;
       const Index row = rows[failure.elements()[0]];
@@ -337,7 +337,7 @@ void solve_by_lanczos(const Pencil& pencil, Index count, const EigenOptions& opt
 
 void solve_by_factorisation(Pencil& pencil, Index count, const EigenOptions& options,
                             EigenPairs& result, Matrix& vectors) {
-  pencil.factorise();
+  pencil.factorise(options.dimension);
   result.method = EigenMethod::Cholesky;
   result.factor = pencil.factor_info();
   if (count == 0) return;

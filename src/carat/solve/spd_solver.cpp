@@ -19,6 +19,10 @@ namespace {
 constexpr Index kIterativeFrom = 10000;
 constexpr Index kManyOnSurfaces = 8;
 constexpr Index kManyInVolumes = 30;
+// Where preconditioning through the sparser matrix serves, it takes 10 to 50 iterations. Where it
+// is far from the matrix (concave faces, coefficients that jump inside diamonds) it takes hundreds,
+// and the matrix itself is the better one to precondition with.
+constexpr Index kPatience = 100;
 /// Part of the free memory that a factor may take.
 constexpr double kMemoryShare = 0.5;
 
@@ -118,7 +122,8 @@ struct SpdSolver::Impl {
   SolverOptions options;
   SolverInfo info;
   std::vector<Index> fixed_rows;
-  std::unique_ptr<Preconditioner> preconditioner;
+  mutable std::unique_ptr<Preconditioner> preconditioner;
+  mutable bool from_sparser = false;         // the preconditioner
   mutable std::unique_ptr<Cholesky> direct;  // also what takes over
   double norm = 0;                           // maximum norm over the free rows
 
@@ -159,7 +164,9 @@ struct SpdSolver::Impl {
     }
   }
 
-  void factorise() const { direct = std::make_unique<Cholesky>(*a->matrix(), fixed); }
+  void factorise() const {
+    direct = std::make_unique<Cholesky>(*a->matrix(), fixed, options.dimension);
+  }
 
   void prepare() {
     for (Index row = 0; row < rows(); ++row)
@@ -179,7 +186,7 @@ struct SpdSolver::Impl {
   }
 
   void prepare_iteration() {
-    const bool from_sparser = build_from_sparser();
+    from_sparser = build_from_sparser();
     if (!from_sparser) try {
         const std::shared_ptr<const SparseMatrix> matrix = a->matrix();
         preconditioner = make_preconditioner(info.kind, *matrix, fixed, options.threads);
@@ -222,11 +229,26 @@ struct SpdSolver::Impl {
     for (const Index row : fixed_rows) y.segment(Eigen::Index{row} * k, k).setZero();
   }
 
-  Matrix iterate(const Matrix& rhs, SolveReport& report) const {
+  Matrix iterate(const Matrix& rhs, const IterationLimits& limits, SolveReport& report) const {
     Matrix b = rhs;
     for (const Index row : fixed_rows) b.row(row).setZero();
     return conjugate_gradients([&](const Vector& x, Vector& y) { multiply(x, y); }, *preconditioner,
-                               b, norm, {}, report, options.threads);
+                               b, norm, limits, report, options.threads);
+  }
+
+  /// As chosen; where that was left to Auto and fails, multigrid of the matrix itself takes over.
+  Matrix iterate(const Matrix& rhs, SolveReport& report) const {
+    if (options.kind != SolverKind::Auto || !from_sparser) return iterate(rhs, {}, report);
+    try {
+      return iterate(rhs, {.iterations = kPatience}, report);
+    } catch (const SolverFailure&) {
+      if (!rhs.allFinite()) throw;
+    }
+    preconditioner = make_preconditioner(info.kind, *a->matrix(), fixed, options.threads);
+    from_sparser = false;
+    report = {};
+    report.method = "conjugate gradients, multigrid after that of the sparser matrix failed";
+    return iterate(rhs, {}, report);
   }
 
   Matrix solve(const Matrix& rhs, SolveReport& report) const {
