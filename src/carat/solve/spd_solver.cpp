@@ -18,7 +18,7 @@ namespace {
 // pays all the same (docs/performance.md, Solvers). Smaller systems take milliseconds either way.
 constexpr Index kIterativeFrom = 10000;
 constexpr Index kManyOnSurfaces = 8;
-constexpr Index kManyInVolumes = 30;
+constexpr Index kManyInVolumes = 60;
 // Where preconditioning through the sparser matrix serves, it takes 10 to 50 iterations. Where it
 // is far from the matrix (concave faces, coefficients that jump inside diamonds) it takes hundreds,
 // and the matrix itself is the better one to precondition with.
