@@ -1,24 +1,27 @@
 // Eigenpairs of the diamond Laplacian on surfaces and in volumes: block Lanczos by a factorisation,
-// in volumes the iteration with multigrid too, against Spectra's shift-invert mode, which may miss
-// members of clusters, with the same factorisation, in the same run: processor seconds and peak
-// memory. Threads of BLAS would be counted too, so leave it one.
+// in volumes by conjugate gradients too, against Spectra's shift-invert mode with the same
+// factorisation, which may miss members of clusters, in the same run. Every case runs in a process
+// of its own, for its peak memory beyond the matrices. Seconds are the processor's; threads of BLAS
+// would be counted too, so leave it one: OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1.
 //
-//   OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 carat_bench_eigen [PAIRS [SURFACE_VERTICES
-//                                                              [VOLUME_VERTICES]]]
+//   carat_bench_eigen [--benchmark_filter=REGEX] [--benchmark_...]
 //
-// Default: 50 100000 50000
+// Names are METHOD/MESH/VERTICES/PAIRS. CARAT_BENCH_LARGEST leaves out larger meshes.
 
 #include <Spectra/MatOp/SparseSymMatProd.h>
 #include <Spectra/SymGEigsShiftSolver.h>
-#include <sys/mman.h>
+#include <benchmark/benchmark.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "carat/base/memory.h"
 #include "carat/operators/registry.h"
 #include "carat/solve/eigen_solver.h"
 #include "grids.h"
@@ -65,95 +68,133 @@ double worst_residual(const Discretization& d, const Vector& values, const Matri
   return worst;
 }
 
-struct Result {
-  double seconds = 0, factor_seconds = 0, residual = 0, first_value = 0, solves = 0;
+struct Case {
+  std::string method, mesh;
+  Index size, pairs;
 };
 
-Result run_ours(const Discretization& d, Index count, const EigenOptions& options) {
+/// What a case's process sends back.
+struct Outcome {
+  double seconds = 0, factor_seconds = 0, residual = 0, solves = 0, megabytes = 0, vertices = 0;
+};
+
+Outcome run_ours(const Discretization& d, Index pairs, const EigenOptions& options) {
+  Outcome outcome;
   const double start = cpu_seconds();
-  const EigenPairs pairs = smallest_eigenpairs(d.stiffness, d.mass, count, {}, options);
-  return {cpu_seconds() - start, pairs.factor.analyse_seconds + pairs.factor.factor_seconds,
-          pairs.residuals.maxCoeff(), pairs.values[pairs.zero_modes],
-          static_cast<double>(pairs.solves)};
+  const EigenPairs found = smallest_eigenpairs(d.stiffness, d.mass, pairs, {}, options);
+  outcome.seconds = cpu_seconds() - start;
+  outcome.factor_seconds = found.factor.analyse_seconds + found.factor.factor_seconds;
+  outcome.residual = found.residuals.maxCoeff();
+  outcome.solves = found.solves;
+  return outcome;
 }
 
 /// Plain use of Spectra: a shift below zero that is small beside the first eigenvalue.
-Result run_spectra(const Discretization& d, Index count, double shift) {
+Outcome run_spectra(const Discretization& d, Index pairs, double shift) {
+  Outcome outcome;
   const double start = cpu_seconds();
   using Product = Spectra::SparseSymMatProd<double, Eigen::Lower, Eigen::RowMajor>;
   ShiftedInverse inverse(d);
   const SparseMatrix::Plain& mass_matrix = d.mass;
   Product mass(mass_matrix);
   Spectra::SymGEigsShiftSolver<ShiftedInverse, Product, Spectra::GEigsMode::ShiftInvert> solver(
-      inverse, mass, count, 2 * count, shift);
+      inverse, mass, pairs, 2 * pairs, shift);
   solver.init();
   solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-10, Spectra::SortRule::SmallestAlge);
-  const double seconds = cpu_seconds() - start;
-  return {seconds, 0, worst_residual(d, solver.eigenvalues(), solver.eigenvectors()), 0,
-          static_cast<double>(solver.num_operations())};
+  outcome.seconds = cpu_seconds() - start;
+  outcome.residual = worst_residual(d, solver.eigenvalues(), solver.eigenvectors());
+  outcome.solves = static_cast<double>(solver.num_operations());
+  return outcome;
 }
 
-/// Runs in a process of its own: its peak memory can be told, and threads of the libraries would
-/// not outlive a fork.
-template <class Work>
-Result run_apart(const Work& work, double& megabytes) {
-  void* const shared =
-      mmap(nullptr, sizeof(Result), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  megabytes = peak_megabytes([&] { *static_cast<Result*>(shared) = work(); });
-  const Result result = *static_cast<Result*>(shared);
-  munmap(shared, sizeof(Result));
-  return result;
+template <class Mesh>
+Outcome find(const Case& wanted, const Mesh& mesh, int dimension) {
+  const Discretization d =
+      discretize(mesh, "diamond", {.parts = DiscretizationParts::Matrices, .threads = 1});
+  EigenOptions options{.method = EigenMethod::Cholesky, .dimension = dimension, .threads = 1};
+  double shift = 0;
+  if (wanted.method == "spectra")
+    shift = -0.1 * smallest_eigenpairs(d.stiffness, d.mass, 2, {}, options).values[1];
+  restart_peak_memory();
+  const auto before = static_cast<double>(peak_memory());
+  Outcome outcome;
+  if (wanted.method == "spectra") {
+    outcome = run_spectra(d, wanted.pairs, shift);
+  } else {
+    options.method = eigen_method(wanted.method);
+    options.sparser = sparser_stiffness(mesh, d);
+    outcome = run_ours(d, wanted.pairs, options);
+  }
+  outcome.megabytes = (static_cast<double>(peak_memory()) - before) / (1 << 20);
+  outcome.vertices = mesh.n_vertices();
+  return outcome;
 }
 
-void print(const std::string& mesh, const char* method, const Result& result, double megabytes,
-           double baseline) {
-  std::printf("%-12s %-12s %8.2f %8.2f %8.0f %10.1e %8.0f %8.2f\n", mesh.c_str(), method,
-              result.factor_seconds, result.seconds, result.solves, result.residual, megabytes,
-              baseline / result.seconds);
-  std::fflush(stdout);
+/// Mesh, vertices, pairs -> method -> outcome.
+std::map<std::tuple<std::string, Index, Index>, std::map<std::string, Outcome>> outcomes;
+
+void measure(benchmark::State& state, const Case& wanted) {
+  for (auto _ : state) {
+    const Outcome outcome = in_process<Outcome>([&] {
+      return wanted.mesh == "triangles" || wanted.mesh == "hexagons"
+                 ? find(wanted, grid(wanted.mesh, wanted.size), 2)
+                 : find(wanted, volume_grid(wanted.mesh, wanted.size), 3);
+    });
+    if (!(outcome.vertices > 0)) {
+      state.SkipWithError("the process ended without a result");
+      return;
+    }
+    state.SetIterationTime(outcome.seconds);
+    state.counters["factor_s"] = outcome.factor_seconds;
+    state.counters["residual"] = outcome.residual;
+    state.counters["solves"] = outcome.solves;
+    state.counters["peak_MB"] = outcome.megabytes;
+    state.counters["vertices"] = outcome.vertices;
+    outcomes[{wanted.mesh, wanted.size, wanted.pairs}][wanted.method] = outcome;
+  }
 }
 
-void compare(const std::string& mesh, const Discretization& d, Index count,
-             const std::vector<EigenOptions>& ways) {
-  const double empty = peak_megabytes([] {});
-  std::vector<Result> results;
-  std::vector<double> peaks(ways.size());
-  for (std::size_t i = 0; i < ways.size(); ++i)
-    results.push_back(run_apart([&] { return run_ours(d, count, ways[i]); }, peaks[i]));
-  double peak = 0;
-  const Result spectra =
-      run_apart([&] { return run_spectra(d, count, -0.1 * results[0].first_value); }, peak);
-  for (std::size_t i = 0; i < ways.size(); ++i)
-    print(mesh, eigen_method_name(ways[i].method), results[i], peaks[i] - empty, spectra.seconds);
-  print(mesh, "spectra", spectra, peak - empty, spectra.seconds);
+void print_ratios() {
+  std::printf("\n%-10s %9s %6s %-10s %8s %8s %7s %9s %8s %8s\n", "mesh", "vertices", "pairs",
+              "method", "factor s", "total s", "solves", "residual", "peak MB", "Spectra/");
+  for (const auto& [key, methods] : outcomes) {
+    const auto baseline = methods.find("spectra");
+    for (const auto& [method, o] : methods)
+      std::printf("%-10s %9.0f %6d %-10s %8.2f %8.2f %7.0f %9.1e %8.0f %8.2f\n",
+                  std::get<0>(key).c_str(), o.vertices, std::get<2>(key), method.c_str(),
+                  o.factor_seconds, o.seconds, o.solves, o.residual, o.megabytes,
+                  baseline == methods.end() ? 0.0 : baseline->second.seconds / o.seconds);
+  }
+}
+
+void add(const Case& wanted) {
+  const char* const largest = std::getenv("CARAT_BENCH_LARGEST");
+  if (largest != nullptr && wanted.size > std::atoi(largest)) return;
+  const std::string name = wanted.method + "/" + wanted.mesh + "/" + std::to_string(wanted.size) +
+                           "/" + std::to_string(wanted.pairs);
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) { measure(state, wanted); })
+      ->Unit(benchmark::kMillisecond)
+      ->UseManualTime()
+      ->Iterations(1);
 }
 
 }  // namespace
 }  // namespace carat::bench
 
 int main(int argc, char** argv) {
-  using namespace carat;
   using namespace carat::bench;
-  const auto argument = [&](int i, int otherwise) {
-    return argc > i ? std::atoi(argv[i]) : otherwise;
-  };
-  const Index count = argument(1, 50);
-  const DiscretizationOptions options{.parts = DiscretizationParts::Matrices};
-  std::printf("%-12s %-12s %8s %8s %8s %10s %8s %8s\n", "mesh", "method", "factor s", "total s",
-              "solves", "residual", "MB", "ratio");
-  std::fflush(stdout);
-  const EigenOptions cholesky{.method = EigenMethod::Cholesky, .threads = 1};
-  for (const std::string kind : {"triangles", "hexagons"})
-    compare(kind, discretize(grid(kind, argument(2, 100000)), "diamond", options), count,
-            {cholesky});
-  for (const std::string kind : {"tets", "hexahedra"}) {
-    const PolyhedralMesh mesh = volume_grid(kind, argument(3, 50000));
-    const Discretization d = discretize(mesh, "diamond", options);
-    compare(kind, d, count,
-            {cholesky,
-             {.method = EigenMethod::Iterative,
-              .dimension = 3,
-              .sparser = sparser_stiffness(mesh, d),
-              .threads = 1}});
-  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  for (const carat::Index size : {20000, 100000})
+    for (const char* const mesh : {"triangles", "hexagons"})
+      for (const carat::Index pairs : {50, 200})
+        for (const char* const method : {"cholesky", "spectra"}) add({method, mesh, size, pairs});
+  for (const carat::Index size : {10000, 50000})
+    for (const char* const mesh : {"tets", "hexahedra"})
+      for (const char* const method : {"cholesky", "iterative", "spectra"})
+        add({method, mesh, size, 50});
+  add({"iterative", "hexahedra", 275000, 50});
+  benchmark::RunSpecifiedBenchmarks();
+  print_ratios();
 }
