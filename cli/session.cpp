@@ -51,7 +51,6 @@ void Session::add_diagnostics(const Diagnostics& diagnostics) {
   }
 }
 
-
 Session::Phase::Phase(Session& owner, const char* phase)
     : session(owner), name(phase), start(std::chrono::steady_clock::now()), line(phase) {}
 

@@ -304,7 +304,7 @@ class Reports(CaratTest):
         self.assertEqual(run.stderr, "")
 
     def test_progress_line_on_a_terminal(self):
-        self.generate("sphere-quads", 4, "large.ply")
+        self.generate("sphere-quads", 5, "large.ply")
         master, terminal = os.openpty()
         with open(os.devnull, "w") as nowhere:
             subprocess.run([PROGRAM, "geodesics", "large.ply", "--source", "0", "--threads", "1"],

@@ -24,7 +24,8 @@ Buckets coupled_pairs(const TriangleIncidence& mesh, int threads) {
           const Index first = mesh.edge_corners.begin(e);
           if (mesh.edge_corners.size(e) < 2) continue;
           const Index l = vertices[triangle_neighbours(mesh.edge_corners.indices[first]).previous];
-          const Index r = vertices[triangle_neighbours(mesh.edge_corners.indices[first + 1]).previous];
+          const Index r =
+              vertices[triangle_neighbours(mesh.edge_corners.indices[first + 1]).previous];
           if (l == r) continue;  // u_l - u_r vanishes
           emit(std::min(l, r),
                make_key(std::max(l, r), value + static_cast<std::uint32_t>(n_edges)));

@@ -6,8 +6,8 @@
 namespace carat {
 
 /// Diamonds of a block, one lane each, so that loops over lanes become vector instructions of
-/// whatever width there is. Enough of them that what is written first has left the store buffer when
-/// it is read.
+/// whatever width there is. Enough of them that what is written first has left the store buffer
+/// when it is read.
 inline constexpr int kBlockDiamonds = 64;
 
 /// In: the hinge's ends x1, x2 and the vertices opposite to it in the triangle to its left and the
