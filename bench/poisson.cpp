@@ -75,10 +75,11 @@ Outcome solve(const Case& wanted, const Mesh& whole) {
   const SolverOptions solver{.kind = assembled ? SolverKind::Auto : solver_kind(wanted.solver),
                              .threads = wanted.threads};
   if (!assembled) options.form = poisson_form(mesh, wanted.op, solver);
-  const Discretization d = discretize(mesh, wanted.op, options);
+  Discretization d = discretize(mesh, wanted.op, options);
   outcome.assembly = now() - start;
+  outcome.entries = static_cast<double>(d.stiffness.nonZeros());
   start = now();
-  const Poisson poisson(mesh, d, conditions, solver);
+  const Poisson poisson(mesh, std::move(d), conditions, solver);
   outcome.setup = now() - start;
   start = now();
   const PoissonSolution solution = poisson.solve(Vector::Ones(mesh.n_vertices()));
@@ -86,7 +87,6 @@ Outcome solve(const Case& wanted, const Mesh& whole) {
   outcome.megabytes = (static_cast<double>(peak_memory()) - before) / (1 << 20);
   outcome.residual = solution.solve.residual;
   outcome.iterations = solution.solve.iterations;
-  outcome.entries = static_cast<double>(d.stiffness.nonZeros());
   outcome.operator_megabytes = 1e-6 * static_cast<double>(poisson.solver().operator_bytes);
   outcome.vertices = mesh.n_vertices();
   return outcome;

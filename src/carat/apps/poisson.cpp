@@ -51,11 +51,13 @@ void append_zeros(BoundaryIntegrals& boundary, Index n) {
   boundary.robin.conservativeResize(n, n);
 }
 
+/// \param matrix  copied or moved, as it comes
+template <class Matrix>
 std::shared_ptr<const SymmetricOperator> as_operator(
-    const std::shared_ptr<const SymmetricOperator>& product, const SparseMatrix& matrix,
-    int threads) {
+    const std::shared_ptr<const SymmetricOperator>& product, Matrix&& matrix, int threads) {
   if (product) return product;
-  return std::make_shared<MatrixOperator>(std::make_shared<SparseMatrix>(matrix), threads);
+  return std::make_shared<MatrixOperator>(
+      std::make_shared<SparseMatrix>(std::forward<Matrix>(matrix)), threads);
 }
 
 /// \param many  elements have so many vertices that products beat the matrix
@@ -89,30 +91,55 @@ OperatorForm poisson_form(const PolyhedralMesh& mesh, const std::string& operato
               mesh.n_vertices(), solver, 3);
 }
 
+Poisson::Operators Poisson::operators(const Discretization& d, int threads) {
+  return {as_operator(d.stiffness_product, d.stiffness, threads),
+          as_operator(d.mass_product, d.mass, threads)};
+}
+
+Poisson::Operators Poisson::operators(Discretization&& d, int threads) {
+  return {as_operator(d.stiffness_product, std::move(d.stiffness), threads),
+          as_operator(d.mass_product, std::move(d.mass), threads)};
+}
+
 Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
                  const BoundaryConditions& conditions, const SolverOptions& solver)
-    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions,
+    : Poisson(integrate_boundary(mesh, conditions), discretization,
+              operators(discretization, solver.threads), conditions,
               settled(solver, 2, sparser_stiffness(mesh, discretization))) {}
 
 Poisson::Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
                  const BoundaryConditions& conditions, const SolverOptions& solver)
-    : Poisson(integrate_boundary(mesh, conditions), discretization, conditions,
+    : Poisson(integrate_boundary(mesh, conditions), discretization,
+              operators(discretization, solver.threads), conditions,
+              settled(solver, 3, sparser_stiffness(mesh, discretization))) {}
+
+// What is moved out of is read for its name, options and unknowns beyond the vertices alone.
+Poisson::Poisson(const PolygonMesh& mesh, Discretization&& discretization,
+                 const BoundaryConditions& conditions, const SolverOptions& solver)
+    : Poisson(integrate_boundary(mesh, conditions), discretization,
+              operators(std::move(discretization), solver.threads), conditions,
+              settled(solver, 2, sparser_stiffness(mesh, discretization))) {}
+
+Poisson::Poisson(const PolyhedralMesh& mesh, Discretization&& discretization,
+                 const BoundaryConditions& conditions, const SolverOptions& solver)
+    : Poisson(integrate_boundary(mesh, conditions), discretization,
+              operators(std::move(discretization), solver.threads), conditions,
               settled(solver, 3, sparser_stiffness(mesh, discretization))) {}
 
 Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
-                 const BoundaryConditions& conditions, SolverOptions solver)
-    : mass_(as_operator(discretization.mass_product, discretization.mass, solver.threads)),
+                 Operators operators, const BoundaryConditions& conditions, SolverOptions solver)
+    : system_(std::move(operators.stiffness)),
+      mass_(std::move(operators.mass)),
       boundary_load_(std::move(boundary.load)) {
-  if (discretization.n_vertices() != boundary_load_.size())
-    throw InvalidOption("the discretization has " + std::to_string(discretization.n_vertices()) +
+  const Index n = system_->rows(), n_vertices = n - discretization.extra.size();
+  if (n_vertices != boundary_load_.size())
+    throw InvalidOption("the discretization has " + std::to_string(n_vertices) +
                         " vertices, the mesh " + std::to_string(boundary_load_.size()));
-  const Index n = discretization.n_unknowns();
   if (discretization.extra.size() > 0) {
     boundary.load = boundary_load_;
     append_zeros(boundary, n);
     boundary_load_ = boundary.load;
   }
-  system_ = as_operator(discretization.stiffness_product, discretization.stiffness, solver.threads);
   component_ = system_->components();
   const Index n_components =
       component_.empty() ? 0 : *std::max_element(component_.begin(), component_.end()) + 1;
@@ -127,7 +154,7 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
       if (component_[v] >= 0 && SparseMatrix::InnerIterator(boundary.robin, v))
         floating_[component_[v]] = false;
   }
-  fix_dirichlet_vertices(discretization.n_vertices(), conditions);
+  fix_dirichlet_vertices(n_vertices, conditions);
   fix_boundary_unknowns(discretization.extra, conditions);
 
   // A floating component is held at zero at its best determined vertex, and shifted afterwards.

@@ -53,6 +53,11 @@ class Poisson {
           const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
   Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
           const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
+  /// The same from matrices that are moved, not copied.
+  Poisson(const PolygonMesh& mesh, Discretization&& discretization,
+          const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
+  Poisson(const PolyhedralMesh& mesh, Discretization&& discretization,
+          const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
 
   /// \param f  one value an unknown, the vertices first; the load is mass * f
   /// \throws SolverFailure  a floating component's data do not balance: imbalance > 0.1
@@ -64,7 +69,12 @@ class Poisson {
   const SolverInfo& solver() const { return solver_->info(); }
 
  private:
-  Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
+  struct Operators {
+    std::shared_ptr<const SymmetricOperator> stiffness, mass;
+  };
+  static Operators operators(const Discretization& discretization, int threads);
+  static Operators operators(Discretization&& discretization, int threads);
+  Poisson(BoundaryIntegrals boundary, const Discretization& discretization, Operators operators,
           const BoundaryConditions& conditions, SolverOptions solver);
   bool any_floating() const {
     return std::find(floating_.begin(), floating_.end(), true) != floating_.end();
