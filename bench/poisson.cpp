@@ -117,7 +117,7 @@ void measure(benchmark::State& state, const Case& wanted) {
     state.counters["assembly_s"] = outcome.assembly;
     state.counters["setup_s"] = outcome.setup;
     state.counters["solve_s"] = outcome.solution;
-    state.counters["iterations"] = outcome.iterations;
+    state.counters["cg_iterations"] = outcome.iterations;
     state.counters["residual"] = outcome.residual;
     state.counters["peak_MB"] = outcome.megabytes;
     state.counters["nnz"] = outcome.entries;

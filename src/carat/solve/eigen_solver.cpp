@@ -29,7 +29,7 @@ constexpr Index kSpareDimensions = 32;
 // The largest basis, 8 GB; a restart copies most of it.
 constexpr double kMaxEntries = 1e9;
 // Where solving by conjugate gradients becomes faster in volumes.
-constexpr Index kIterativeFrom = 50000;
+constexpr Index kIterativeFrom = 80000;
 /// Part of the free memory that a factor may take.
 constexpr double kMemoryShare = 0.5;
 // Vectors of a residual beyond this are worth one more solve.

@@ -16,7 +16,8 @@ namespace {
 
 // Where multigrid becomes the faster way, and from how many right-hand sides on a factorisation
 // pays all the same (docs/performance.md, Solvers). Smaller systems take milliseconds either way.
-constexpr Index kIterativeFrom = 10000;
+constexpr Index kFewOnSurfaces = 10000;
+constexpr Index kFewInVolumes = 3000;
 constexpr Index kManyOnSurfaces = 8;
 constexpr Index kManyInVolumes = 60;
 // Where preconditioning through the sparser matrix serves, it takes 10 to 50 iterations. Where it
@@ -33,6 +34,10 @@ constexpr std::pair<SolverKind, const char*> kNames[] = {
     {SolverKind::IncompleteCholesky, "incomplete-cholesky"},
     {SolverKind::SparserCholesky, "sparser-cholesky"},
 };
+
+bool are_few(Index n_unknowns, int dimension) {
+  return n_unknowns < (dimension == 3 ? kFewInVolumes : kFewOnSurfaces);
+}
 
 std::string gigabytes(double bytes) {
   char text[32];
@@ -112,7 +117,7 @@ double factor_bytes(Index n_unknowns, double nonzeros, int dimension) {
 
 bool takes_iteration(const SolverOptions& options, Index n_unknowns) {
   if (options.kind != SolverKind::Auto) return options.kind != SolverKind::Cholesky;
-  return n_unknowns >= kIterativeFrom &&
+  return !are_few(n_unknowns, options.dimension) &&
          options.right_hand_sides < (options.dimension == 3 ? kManyInVolumes : kManyOnSurfaces);
 }
 
@@ -138,7 +143,7 @@ struct SpdSolver::Impl {
     const std::string size =
         std::to_string(n) + (volume ? " unknowns of a volume" : " unknowns of a surface");
     info.kind = SolverKind::Cholesky;
-    if (n < kIterativeFrom) {
+    if (are_few(n, options.dimension)) {
       info.reason = size + " are few";
       return;
     }
