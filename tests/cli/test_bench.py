@@ -65,6 +65,8 @@ class Profile(CaratTest):
         self.assertEqual(report["profile"]["read"]["bytes"], size)
         self.assertEqual(report["profile"]["write"]["bytes"],
                          (self.folder / "u.vtp").stat().st_size)
+        for phase in ("factor", "solve"):
+            self.assertGreater(report["profile"][phase]["GB_per_s"], 0)
         entries = sum(report["nnz"][key] for key in ("stiffness", "mass"))
         self.assertGreater(report["profile"]["numeric"]["bytes"], 12 * entries)
         self.assertGreater(report["peak_memory"], 1e6)
