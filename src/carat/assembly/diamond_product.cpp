@@ -9,6 +9,18 @@
 namespace carat {
 namespace {
 
+DiamondProducts both_products(const std::shared_ptr<const ElementStructure>& structure,
+                              const std::shared_ptr<const CornerTerms>& corners,
+                              SparseMatrix between, ElementTerms of_stiffness, SparseMatrix mass,
+                              ElementTerms of_mass, int threads) {
+  return {std::make_shared<ElementProduct>(structure, corners, std::move(between),
+                                           std::make_shared<ElementTerms>(std::move(of_stiffness)),
+                                           threads),
+          std::make_shared<ElementProduct>(structure, corners, std::move(mass),
+                                           std::make_shared<ElementTerms>(std::move(of_mass)),
+                                           threads)};
+}
+
 /// The energy of a diamond as couplings.
 GeneralDiamondTerm couplings(const DiamondTerm& term) {
   GeneralDiamondTerm k{};
@@ -206,12 +218,8 @@ DiamondProducts diamond_products(std::shared_ptr<const ElementStructure> structu
   });
   if (lumped_mass) of_mass = {};
   const auto corners = std::make_shared<CornerTerms>(*structure, weights, own, threads);
-  return {std::make_shared<ElementProduct>(structure, corners, std::move(between),
-                                           std::make_shared<ElementTerms>(std::move(of_stiffness)),
-                                           threads),
-          std::make_shared<ElementProduct>(structure, corners, std::move(mass),
-                                           std::make_shared<ElementTerms>(std::move(of_mass)),
-                                           threads)};
+  return both_products(structure, corners, std::move(between), std::move(of_stiffness),
+                       std::move(mass), std::move(of_mass), threads);
 }
 
 template DiamondProducts diamond_products(std::shared_ptr<const ElementStructure>, bool,
@@ -324,12 +332,8 @@ DiamondProducts diamond_products(std::shared_ptr<const ElementStructure> structu
   });
   if (lumped_mass) of_mass = {};
   const auto corners = std::make_shared<CornerTerms>(*structure, cell_weights, own, threads);
-  return {std::make_shared<ElementProduct>(structure, corners, std::move(between),
-                                           std::make_shared<ElementTerms>(std::move(of_stiffness)),
-                                           threads),
-          std::make_shared<ElementProduct>(structure, corners, std::move(mass),
-                                           std::make_shared<ElementTerms>(std::move(of_mass)),
-                                           threads)};
+  return both_products(structure, corners, std::move(between), std::move(of_stiffness),
+                       std::move(mass), std::move(of_mass), threads);
 }
 
 }  // namespace carat

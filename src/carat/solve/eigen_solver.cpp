@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <random>
 #include <span>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "carat/base/error.h"
+#include "carat/base/text.h"
 #include "carat/solve/krylov/largest_pairs.h"
 #include "carat/solve/krylov/products.h"
 #include "carat/solve/spd_solver.h"
@@ -358,12 +358,6 @@ void solve_by_iteration(Pencil& pencil, Index count, const EigenOptions& options
   result.method = EigenMethod::Iterative;
   result.factor = pencil.factor_info();
   solve_by_lanczos(pencil, count, options, result, vectors);
-}
-
-std::string gigabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f GB", bytes * 1e-9);
-  return text;
 }
 
 /// \return whether to iterate without a factorisation; result.reason says why

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "carat/base/error.h"
+#include "carat/base/text.h"
 #include "carat/solve/incomplete_cholesky.h"
 #include "carat/solve/matrix_operator.h"
 #include "carat/solve/multigrid.h"
@@ -37,12 +37,6 @@ constexpr std::pair<SolverKind, const char*> kNames[] = {
 
 bool are_few(Index n_unknowns, int dimension) {
   return n_unknowns < (dimension == 3 ? kFewInVolumes : kFewOnSurfaces);
-}
-
-std::string gigabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f GB", bytes * 1e-9);
-  return text;
 }
 
 class FactorPreconditioner final : public Preconditioner {
