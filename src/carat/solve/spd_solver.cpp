@@ -123,6 +123,7 @@ struct SpdSolver::Impl {
   std::vector<Index> fixed_rows;
   mutable std::unique_ptr<Preconditioner> preconditioner;
   mutable bool from_sparser = false;         // the preconditioner
+  mutable std::string took_over;             // the method that did, if another than chosen
   mutable std::unique_ptr<Cholesky> direct;  // also what takes over
   double norm = 0;                           // maximum norm over the free rows
 
@@ -245,13 +246,14 @@ struct SpdSolver::Impl {
     }
     preconditioner = make_preconditioner(info.kind, *a->matrix(), fixed, options.threads);
     from_sparser = false;
+    took_over = "conjugate gradients, multigrid after that of the sparser matrix failed";
     report = {};
-    report.method = "conjugate gradients, multigrid after that of the sparser matrix failed";
+    report.method = took_over;
     return iterate(rhs, {}, report);
   }
 
   Matrix solve(const Matrix& rhs, SolveReport& report) const {
-    report.method = info.method;
+    report.method = took_over.empty() ? info.method : took_over;
     if (!direct) try {
         return iterate(rhs, report);
       } catch (const SolverFailure&) {
