@@ -56,6 +56,42 @@ TEST(TetDiamonds, agree_with_the_general_form) {
       }
 }
 
+TEST(TetDiamonds, stabilised_agree_with_the_general_form) {
+  for (const bool folded : {false, true})
+    for (const bool turned : {false, true})
+      for (const MassKind mass : {MassKind::Full, MassKind::MomentExact, MassKind::Lumped})
+        for (const double theta : {0.0, 2.0 / 3, 1.0}) {
+          SCOPED_TRACE("theta " + std::to_string(theta));
+          const PolyhedralMesh mesh = mesh_of(folded, turned);
+          DiscretizationOptions options{.mass = mass, .theta = theta};
+          if (mass == MassKind::MomentExact) options.tau = 0.7;
+          const Discretization closed = discretize(mesh, "stabilized_diamond", options);
+          options.coefficient = [](const Vec3&) { return 1.0; };
+          const Discretization general = discretize(mesh, "stabilized_diamond", options);
+          expect_near(closed.stiffness, general.stiffness);
+          expect_near(closed.mass, general.mass);
+          EXPECT_LT((closed.sample_measure - general.sample_measure).cwiseAbs().maxCoeff(),
+                    1e-14 * general.sample_measure.sum());
+        }
+}
+
+TEST(TetDiamonds, stabilised_have_the_same_bits_for_any_number_of_threads_and_are_symmetric) {
+  const PolyhedralMesh mesh = generate_volume("cube-tets", {.level = 2, .jitter = 0.3});
+  DiscretizationOptions options{
+      .mass = MassKind::MomentExact, .parts = DiscretizationParts::Matrices, .threads = 1};
+  const Discretization one = discretize(mesh, "stabilized_diamond", options);
+  for (const int threads : {2, 3, 7}) {
+    options.threads = threads;
+    const Discretization many = discretize(mesh, "stabilized_diamond", options);
+    EXPECT_EQ(values(one.stiffness), values(many.stiffness));
+    EXPECT_EQ(values(one.mass), values(many.mass));
+  }
+  EXPECT_LT((values(one.stiffness) - values(SparseMatrix(one.stiffness.transpose())))
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-15 * values(one.stiffness).cwiseAbs().maxCoeff());
+}
+
 TEST(TetDiamonds, topology_names_what_is_opposite_and_across) {
   // Two tetrahedra on the face (1, 2, 3).
   Points points(5, 3);

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "carat/generators/families.h"
 #include "carat/operators/diamond/triangle_diamond.h"
 #include "carat/operators/registry.h"
 #include "support/meshes.h"
@@ -103,22 +104,51 @@ TEST(TriangleDiamond, equals_the_general_assembly) {
       }
 }
 
+TEST(TriangleDiamond, stabilised_equals_the_general_assembly) {
+  std::vector<NamedMesh> meshes = triangle_meshes();
+  meshes.push_back({"plane", generate_mesh("plane-triangles", {.level = 2, .jitter = 0.4})});
+  meshes.push_back({"torus", generate_mesh("torus-triangles", {.level = 1, .jitter = 0.3})});
+  for (const NamedMesh& named : meshes)
+    for (const MassKind mass : {MassKind::Full, MassKind::MomentExact, MassKind::Lumped})
+      for (const double theta : {0.0, 0.75, 1.0})
+        for (const bool weighted : {false, true}) {
+          SCOPED_TRACE(std::string(named.name) + ", theta " + std::to_string(theta) +
+                       (weighted ? ", weighted" : ""));
+          DiscretizationOptions options{.mass = mass, .theta = theta};
+          if (mass == MassKind::MomentExact) options.tau = 0.6;
+          if (weighted) options.coefficient = [](const Vec3& x) { return 2 + std::sin(x.x()); };
+          const Discretization general = discretize(named.mesh, "stabilized_diamond", options);
+          options.parts = DiscretizationParts::Matrices;
+          const Discretization closed = discretize(named.mesh, "stabilized_diamond", options);
+          // Of a triangle of height 1e-9, the crossing's place is known to 1e-16 / 1e-9.
+          EXPECT_LT(difference(general.stiffness, closed.stiffness), 1e-12);
+          EXPECT_LT(difference(general.mass, closed.mass), 1e-12);
+          EXPECT_LT((general.sample_measure - closed.sample_measure).cwiseAbs().maxCoeff(),
+                    1e-15 * general.sample_measure.maxCoeff());
+          EXPECT_EQ(SparseMatrix(closed.stiffness.transpose()).coeffs().matrix(),
+                    closed.stiffness.coeffs().matrix());
+        }
+}
+
 TEST(TriangleDiamond, same_bits_for_any_number_of_threads) {
   const PolygonMesh mesh = sheet(70);
-  DiscretizationOptions options;
-  options.parts = DiscretizationParts::Matrices;
-  options.threads = 1;
-  const Discretization one = discretize(mesh, "diamond", options);
-  for (const int threads : {2, 3, 7}) {
-    options.threads = threads;
-    const PolygonMesh bare(mesh.points(), mesh.faces());
-    const Discretization many = discretize(bare, "diamond", options);
-    EXPECT_EQ(difference(one.stiffness, many.stiffness), 0);
-    EXPECT_EQ(difference(one.mass, many.mass), 0);
-    EXPECT_EQ(mesh.edges().vertices, bare.edges().vertices);
-    EXPECT_EQ(mesh.edges().corners.indices, bare.edges().corners.indices);
-    EXPECT_EQ(mesh.edges().of_corner, bare.edges().of_corner);
-  }
+  for (const char* const name : {"diamond", "stabilized_diamond"})
+    for (const MassKind mass : {MassKind::Full, MassKind::MomentExact}) {
+      DiscretizationOptions options{.mass = mass};
+      options.parts = DiscretizationParts::Matrices;
+      options.threads = 1;
+      const Discretization one = discretize(mesh, name, options);
+      for (const int threads : {2, 3, 7}) {
+        options.threads = threads;
+        const PolygonMesh bare(mesh.points(), mesh.faces());
+        const Discretization many = discretize(bare, name, options);
+        EXPECT_EQ(difference(one.stiffness, many.stiffness), 0);
+        EXPECT_EQ(difference(one.mass, many.mass), 0);
+        EXPECT_EQ(mesh.edges().vertices, bare.edges().vertices);
+        EXPECT_EQ(mesh.edges().corners.indices, bare.edges().corners.indices);
+        EXPECT_EQ(mesh.edges().of_corner, bare.edges().of_corner);
+      }
+    }
 }
 
 TEST(TriangleDiamond, leaves_other_meshes_to_the_general_assembly) {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "carat/kernels/diamond_2d.h"
+#include "carat/kernels/diamond_split.h"
 #include "carat/kernels/triangle_diamond_block.h"
 
 namespace carat {
@@ -37,6 +38,41 @@ TEST(TriangleDiamondBlock, equals_the_diamond_of_two_virtual_triangles) {
     EXPECT_NEAR(block.gamma[k], expected.gamma, tolerance);
     EXPECT_NEAR(block.area[k], expected.area, 1e-14);
     EXPECT_EQ(block.thin[k], 0);
+  }
+}
+
+TEST(TriangleDiamondBlock, diagonals_cross_as_in_the_diamond_of_two_virtual_triangles) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  TriangleDiamondBlock block, plain;
+  for (int k = 0; k < kBlockDiamonds; ++k) {
+    block.inner[k] = k % 5 == 0 ? 0.0 : 1.0;
+    for (auto& vertex : block.x)
+      for (auto& coordinate : vertex) coordinate[k] = uniform(random);
+  }
+  for (int i = 0; i < 3; ++i) block.x[3][i][1] = block.x[0][i][1];  // no half to the right
+  plain = block;
+  TriangleCrossingBlock crossing;
+  triangle_diamond_block(plain, 1e-14);
+  triangle_diamond_block(block, 1e-14, crossing);
+  for (int k = 0; k < kBlockDiamonds; ++k) {
+    EXPECT_EQ(block.alpha[k], plain.alpha[k]);
+    EXPECT_EQ(block.area[k], plain.area[k]);
+    if (!(block.inner[k] > 0)) {
+      EXPECT_EQ(crossing.stiffness[k], 0);
+      continue;
+    }
+    const auto point = [&](int i) {
+      return Vec3(block.x[i][0][k], block.x[i][1][k], block.x[i][2][k]);
+    };
+    const Vec3 x1 = point(0), x2 = point(1);
+    const DiamondCrossing<2> expected = diamond_crossing(
+        (x2 - x1).squaredNorm(), half(x1, x2, point(2)), half(x1, x2, point(3)), 1e-14);
+    EXPECT_NEAR(crossing.left_fraction[k], expected.left_fraction, 1e-14);
+    EXPECT_NEAR(crossing.right_fraction[k], 1 - expected.left_fraction, 1e-14);
+    EXPECT_NEAR(crossing.foot[k], expected.base[1], 1e-13 * (1 + std::abs(expected.base[1])));
+    EXPECT_NEAR(crossing.stiffness[k], expected.stiffness, 1e-12 * expected.stiffness);
+    EXPECT_EQ(crossing.stiffness[k] > 0, k != 1);
   }
 }
 

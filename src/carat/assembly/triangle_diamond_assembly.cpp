@@ -191,9 +191,12 @@ TriangleDiamondPatterns triangle_diamond_patterns(const TriangleIncidence& mesh,
   return result;
 }
 
-void TriangleDiamondTerms::resize(Index n_edges, const TriangleDiamondSources& sources) {
+void TriangleDiamondTerms::resize(Index n_edges, Index n_corners, bool split,
+                                  const TriangleDiamondSources& sources) {
   const auto n = static_cast<std::size_t>(n_edges);
-  around.resize(n + 1);
+  around.resize(split ? 0 : n + 1);
+  halves.resize(split ? static_cast<std::size_t>(n_corners) : 0);
+  ends.resize(split ? n : 0);
   values.resize(2 * n + sources.sums.size() + 1);
   mass.resize(n + 1);
 }
@@ -201,17 +204,28 @@ void TriangleDiamondTerms::resize(Index n_edges, const TriangleDiamondSources& s
 namespace {
 
 /// The values of edges: what the sides around them add.
+template <bool kHalves>
 void add_sides(const TriangleIncidence& mesh, Index begin, Index end, TriangleDiamondTerms& terms) {
-  const Index* const of_corner = mesh.corner_edges.data();
-  const TriangleDiamondTerms::Around* const around = terms.around.data();
+  [[maybe_unused]] const Index* const of_corner = mesh.corner_edges.data();
+  [[maybe_unused]] const TriangleDiamondTerms::Around* const around = terms.around.data();
   for (Index e = begin; e < end; ++e) {
     double value = terms.values[e], mass = 0;
     for (Index k = mesh.edge_corners.begin(e); k < mesh.edge_corners.end(e); ++k) {
-      const TriangleCorners corners = triangle_neighbours(mesh.edge_corners.indices[k]);
-      const auto& next = around[of_corner[corners.next]];
-      const auto& previous = around[of_corner[corners.previous]];
-      value += next.beta - previous.beta;
-      mass += next.share + previous.share + around[e].share;
+      const Index corner = mesh.edge_corners.indices[k];
+      const TriangleCorners corners = triangle_neighbours(corner);
+      if constexpr (kHalves) {
+        const auto& next = terms.halves[corners.next];
+        const auto& previous = terms.halves[corners.previous];
+        value += next.start + previous.end;
+        // In one order for all edges of the face.
+        const Index first = corner - corner % 3;
+        mass += terms.halves[first].tip + terms.halves[first + 1].tip + terms.halves[first + 2].tip;
+      } else {
+        const auto& next = around[of_corner[corners.next]];
+        const auto& previous = around[of_corner[corners.previous]];
+        value += next.beta - previous.beta;
+        mass += next.share + previous.share + around[e].share;
+      }
     }
     terms.values[e] = value;
     terms.mass[e] = mass;
@@ -246,8 +260,10 @@ void fill_stiffness(SparseMatrix& matrix, const TriangleDiamondSources& sources,
   }
 }
 
-void fill_mass(SparseMatrix& matrix, bool lumped, const TriangleDiamondSources& sources,
-               Index begin, Index end, const TriangleDiamondTerms& terms) {
+template <bool kHalves>
+void fill_mass(SparseMatrix& matrix, bool lumped, [[maybe_unused]] const TriangleIncidence& mesh,
+               const TriangleDiamondSources& sources, Index begin, Index end,
+               const TriangleDiamondTerms& terms) {
   double* const out = matrix.valuePtr();
   for (Index row = begin; row < end; ++row) {
     // A face adds the same to the two edges at the vertex and to the vertex.
@@ -257,9 +273,12 @@ void fill_mass(SparseMatrix& matrix, bool lumped, const TriangleDiamondSources& 
       const double value = terms.mass[e];
       if (!lumped) out[k] = value;
       edges += value;
-      shares += terms.around[e].share;
+      if constexpr (!kHalves)
+        shares += terms.around[e].share;
+      else if (k != sources.mass_diagonal[row])
+        shares += terms.ends[e][mesh.edge_vertices[e][0] == row ? 0 : 1];
     }
-    const double diagonal = edges / 2 + 9 * shares;
+    const double diagonal = edges / 2 + (kHalves ? shares : 9 * shares);
     if (lumped)
       out[row] = edges + diagonal;
     else if (sources.mass_diagonal[row] >= 0)
@@ -274,8 +293,10 @@ void assemble_triangle_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, boo
                                 const TriangleDiamondSources& sources, int threads,
                                 TriangleDiamondTerms& terms) {
   const Index n_edges = mesh.edge_corners.n_rows();
-  parallel_blocks(n_edges, threads,
-                  [&](int, Index begin, Index end) { add_sides(mesh, begin, end, terms); });
+  const bool halves = !terms.halves.empty();
+  parallel_blocks(n_edges, threads, [&](int, Index begin, Index end) {
+    halves ? add_sides<true>(mesh, begin, end, terms) : add_sides<false>(mesh, begin, end, terms);
+  });
   add_boundary(mesh, sources, terms.values);
   double* sum = terms.values.data() + 2 * static_cast<std::size_t>(n_edges);
   for (const std::vector<std::uint32_t>& members : sources.sums) {
@@ -285,10 +306,13 @@ void assemble_triangle_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, boo
   }
   *sum = 0;
   terms.mass[n_edges] = 0;
-  terms.around[n_edges] = {0, 0};
+  if (!halves) terms.around[n_edges] = {0, 0};
   parallel_blocks(static_cast<Index>(stiffness.rows()), threads, [&](int, Index begin, Index end) {
     fill_stiffness(stiffness, sources, begin, end, terms.values);
-    fill_mass(mass, lumped_mass, sources, begin, end, terms);
+    if (halves)
+      fill_mass<true>(mass, lumped_mass, mesh, sources, begin, end, terms);
+    else
+      fill_mass<false>(mass, lumped_mass, mesh, sources, begin, end, terms);
   });
 }
 

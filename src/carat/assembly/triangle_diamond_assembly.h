@@ -5,7 +5,8 @@
 // the vertices opposite to the edge. So the stiffness has two kinds of off-diagonal entries: one an
 // edge, -alpha and the differences of the betas of the sides around it, and one an inner edge
 // between o_l and o_r, -gamma / 9. Both are computed once and gathered by the rows, which sum to
-// zero.
+// zero. The jump between the halves of a diamond couples the same four vertices, but the four sides
+// by a value each, in place of one beta.
 
 #include <array>
 #include <cstdint>
@@ -65,11 +66,21 @@ struct TriangleDiamondTerms {
     double share;  ///< mass share of each vertex / 9  [length^2]
   };
   Array<Around> around;
+  /// In place of `around` where the halves of diamonds differ: in jumps, or in the moment-exact
+  /// mass. By corner: of the diamond over its side, S between the vertex opposite to the side and
+  /// the side's start and end, and the mass of the face's virtual vertex / 9.
+  struct Half {
+    double start, end;
+    double tip;  ///< [length^2]
+  };
+  Array<Half> halves;
+  Array<std::array<double, 2>> ends;  ///< by edge: masses of its ends, lower one first  [length^2]
   /// In: -alpha by edge, then -gamma / 9 by edge. Further places as in TriangleDiamondSources.
   Array<double> values;
   Array<double> mass;  ///< of the two ends of every edge  [length^2]
 
-  void resize(Index n_edges, const TriangleDiamondSources& sources);
+  /// \param halves  whether those of diamonds differ
+  void resize(Index n_edges, Index n_corners, bool halves, const TriangleDiamondSources& sources);
 };
 
 /// Fills both matrices; the mass, if diagonal, with the row sums.

@@ -12,13 +12,53 @@ struct alignas(64) Lanes {
   double x[8][3][kBlockTets], sign[kBlockTets], boundary[4][kBlockTets];
   double pair[6][kBlockTets], across[4][kBlockTets], face_mass[4][kBlockTets];
   double cell_mass[kBlockTets], volume[4][kBlockTets], thick[kBlockTets];
+  double vertex_mass[4][kBlockTets];
 };
 
 constexpr int kPair[4][4] = {{9, 0, 1, 2}, {0, 9, 3, 4}, {1, 3, 9, 5}, {2, 4, 5, 9}};
 
+/// Masses of the three diamonds of a face, as fractions of one diamond.
+struct FaceMasses {
+  double corner[3];  // of its vertices
+  double face_point;
+  double own, other;  // of the tips
+};
+
+inline double larger(double a, double b) { return a > b ? a : b; }
+inline double smaller(double a, double b) { return a < b ? a : b; }
+
+/// As moment_exact_mass.
+/// \param at    barycentric coordinates of the axis in the face
+/// \param part  of the volume, on the side of the own tip
+[[gnu::always_inline]] inline FaceMasses moment_exact_masses(const double (&at)[3], double part,
+                                                             double other_part, double tau) {
+  FaceMasses masses{};
+  const double less = smaller(part, other_part);
+  const double least = less < 0 ? -less / (1 - less) : 0.0;
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; ++i) {
+    // Between vertices i and j = i + 1 and the face point, whose weights are 1/3.
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const double at_i = at[i] - at[k], at_j = at[j] - at[k], at_point = 3 * at[k];
+    const double most = 1 / larger(1.0, larger(larger(at_i, at_j), at_point));
+    const bool serves = !(least > most);
+    const double t = larger(least, smaller(most, tau));
+    const auto share = [&](double value) { return serves ? larger(0.0, 0.25 * value) : 0.2; };
+    masses.corner[i] += share(1 - t * at_i);
+    masses.corner[j] += share(1 - t * at_j);
+    masses.face_point += share(1 - t * at_point);
+    masses.own += share(t + (1 - t) * part);
+    masses.other += share(t + (1 - t) * other_part);
+  }
+  return masses;
+}
+
 /// Adds the diamonds of the face opposite to vertex K, its vertices ascending.
-template <int K>
-[[gnu::always_inline]] inline void add_face(Lanes& lanes, double limit2) {
+template <int K, bool kHalves, bool kMomentExact>
+[[gnu::always_inline]] inline void add_face(Lanes& lanes, double limit2,
+                                            [[maybe_unused]] double eps_rel,
+                                            [[maybe_unused]] const TetHalves& halves) {
+  [[maybe_unused]] const double jump_part = halves.jump, tau = halves.tau;
   constexpr int A = K == 0 ? 1 : 0, B = K <= 1 ? 2 : 1, C = K == 3 ? 2 : 3;
   for (int l = 0; l < kBlockTets; ++l) {
     // Seen from above the face runs counter-clockwise; + if the cell is above.
@@ -71,22 +111,88 @@ template <int K>
     lanes.pair[kPair[B][K]][l] += to_own - alpha_b / 4;
     lanes.pair[kPair[C][K]][l] += to_own - alpha_c / 4;
     lanes.across[K][l] = boundary ? 0.0 : gamma / 16;
-    // Each minimal diamond: 1/6 to a vertex, 1/4 to a tip; 1/4 throughout at the boundary. The face
-    // point's part has weights 1/9 over the pairs.
-    lanes.face_mass[K][l] = volume * (boundary ? 1.0 / 12 : 1.0 / 36);
-    lanes.cell_mass[l] += 3 * volume / 64;
     lanes.volume[K][l] = volume;
+    if constexpr (kHalves) {
+      // Heights of the tips above and below the face, of which both cells compute the same bits.
+      double own[3], other[3];
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+        own[i] = lanes.x[K][i][l] - lanes.x[A][i][l];
+        other[i] = lanes.x[4 + K][i][l] - lanes.x[A][i][l];
+      }
+      const double own_height = side * (w0 * own[0] + w1 * own[1] + w2 * own[2]);
+      const double other_height = -side * (w0 * other[0] + w1 * other[1] + w2 * other[2]);
+      const double heights = own_height + other_height;
+      const double part = own_height / heights, other_part = other_height / heights;
+      double q[3];  // where the axis meets the face, from its first vertex
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i)
+        q[i] = 0.25 * (ab[i] + ac[i] + (other_part * own[i] + part * other[i]));
+      const double inverse = 1 / (w0 * w0 + w1 * w1 + w2 * w2);
+      const double at_b =
+          inverse * (w0 * (q[1] * ac[2] - q[2] * ac[1]) + w1 * (q[2] * ac[0] - q[0] * ac[2]) +
+                     w2 * (q[0] * ac[1] - q[1] * ac[0]));
+      const double at_c =
+          inverse * (w0 * (ab[1] * q[2] - ab[2] * q[1]) + w1 * (ab[2] * q[0] - ab[0] * q[2]) +
+                     w2 * (ab[0] * q[1] - ab[1] * q[0]));
+      const double at[3] = {1 - at_b - at_c, at_b, at_c};
+      // The jump is c . u over the face and the two opposite vertices.
+      const bool jumps = sound & !boundary & (part > eps_rel) & (other_part > eps_rel);
+      const double whole_jump = jump_part * gamma / (part * other_part);
+      const double jump = jumps ? whole_jump : 0.0;
+      double c[3];
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+        const double value = 0.25 - at[i];
+        c[i] = jumps ? value : 0.0;
+      }
+      const double c_own = jumps ? 0.25 * other_part : 0.0, c_other = jumps ? 0.25 * part : 0.0;
+      lanes.pair[kPair[A][B]][l] -= 0.5 * jump * (c[0] * c[1]);
+      lanes.pair[kPair[A][C]][l] -= 0.5 * jump * (c[0] * c[2]);
+      lanes.pair[kPair[B][C]][l] -= 0.5 * jump * (c[1] * c[2]);
+      lanes.pair[kPair[A][K]][l] -= jump * (c[0] * c_own);
+      lanes.pair[kPair[B][K]][l] -= jump * (c[1] * c_own);
+      lanes.pair[kPair[C][K]][l] -= jump * (c[2] * c_own);
+      lanes.across[K][l] -= jump * (c_own * c_other);
+      if constexpr (kMomentExact) {
+        const FaceMasses exact = moment_exact_masses(at, part, other_part, tau);
+        const bool split = sound & !boundary;
+        const double quarter = boundary ? volume * 0.5 : 0.0;  // of two diamonds at the boundary
+        const double half = 0.5 * volume;                      // the other cell adds as much
+        lanes.vertex_mass[A][l] += split ? half * exact.corner[0] : quarter;
+        lanes.vertex_mass[B][l] += split ? half * exact.corner[1] : quarter;
+        lanes.vertex_mass[C][l] += split ? half * exact.corner[2] : quarter;
+        lanes.face_mass[K][l] = split ? half * exact.face_point / 9 : volume / 12;
+        lanes.cell_mass[l] += split ? volume * exact.own / 16 : 3 * volume / 64;
+      }
+    }
+    if constexpr (!kMomentExact) {
+      // Each minimal diamond: 1/6 to a vertex, 1/4 to a tip; 1/4 throughout at the boundary. The
+      // face point's part has weights 1/9 over the pairs.
+      lanes.face_mass[K][l] = volume * (boundary ? 1.0 / 12 : 1.0 / 36);
+      lanes.cell_mass[l] += 3 * volume / 64;
+      if constexpr (kHalves) {
+        lanes.vertex_mass[A][l] += 6 * lanes.face_mass[K][l];
+        lanes.vertex_mass[B][l] += 6 * lanes.face_mass[K][l];
+        lanes.vertex_mass[C][l] += 6 * lanes.face_mass[K][l];
+      }
+    }
   }
 }
 
-CARAT_MULTIVERSION void compute(Lanes& lanes, double limit2) {
+template <bool kHalves, bool kMomentExact>
+[[gnu::always_inline]] inline void add_faces(Lanes& lanes, double limit2, double eps_rel,
+                                             const TetHalves& halves) {
   for (int p = 0; p < 6; ++p)
     for (int l = 0; l < kBlockTets; ++l) lanes.pair[p][l] = 0;
   for (int l = 0; l < kBlockTets; ++l) lanes.cell_mass[l] = 0;
-  add_face<0>(lanes, limit2);
-  add_face<1>(lanes, limit2);
-  add_face<2>(lanes, limit2);
-  add_face<3>(lanes, limit2);
+  if constexpr (kHalves)
+    for (int k = 0; k < 4; ++k)
+      for (int l = 0; l < kBlockTets; ++l) lanes.vertex_mass[k][l] = 0;
+  add_face<0, kHalves, kMomentExact>(lanes, limit2, eps_rel, halves);
+  add_face<1, kHalves, kMomentExact>(lanes, limit2, eps_rel, halves);
+  add_face<2, kHalves, kMomentExact>(lanes, limit2, eps_rel, halves);
+  add_face<3, kHalves, kMomentExact>(lanes, limit2, eps_rel, halves);
   for (int l = 0; l < kBlockTets; ++l) {
     double e[3][3], size2 = 0;
 #pragma GCC unroll 3
@@ -103,11 +209,21 @@ CARAT_MULTIVERSION void compute(Lanes& lanes, double limit2) {
   }
 }
 
-}  // namespace
+CARAT_MULTIVERSION void compute(Lanes& lanes, double limit2) {
+  add_faces<false, false>(lanes, limit2, 0, {});
+}
 
-bool tet_diamond_block(const double* points, const TetDiamondInput* input, double eps_rel,
-                       TetDiamonds* const* tets, double (*volumes)[4]) {
-  Lanes lanes;
+CARAT_MULTIVERSION void compute_halves(Lanes& lanes, double limit2, double eps_rel,
+                                       const TetHalves& halves) {
+  add_faces<true, false>(lanes, limit2, eps_rel, halves);
+}
+
+CARAT_MULTIVERSION void compute_moment_exact(Lanes& lanes, double limit2, double eps_rel,
+                                             const TetHalves& halves) {
+  add_faces<true, true>(lanes, limit2, eps_rel, halves);
+}
+
+void load(const double* points, const TetDiamondInput* input, Lanes& lanes) {
   for (int l = 0; l < kBlockTets; ++l) {
     const Index* const vertices = input[l].vertices;
     for (int i = 0; i < 8; ++i) {
@@ -118,8 +234,9 @@ bool tet_diamond_block(const double* points, const TetDiamondInput* input, doubl
     for (int k = 0; k < 4; ++k) lanes.boundary[k][l] = vertices[4 + k] < 0 ? 1.0 : 0.0;
     lanes.sign[l] = input[l].sign;
   }
-  const double limit = 6 * eps_rel;
-  compute(lanes, limit * limit);
+}
+
+bool store(const Lanes& lanes, TetDiamonds* const* tets, double (*volumes)[4]) {
   bool thick = true;
   for (int l = 0; l < kBlockTets; ++l) {
     TetDiamonds& tet = *tets[l];
@@ -131,6 +248,33 @@ bool tet_diamond_block(const double* points, const TetDiamondInput* input, doubl
     thick = thick && lanes.thick[l] > 0;
   }
   return thick;
+}
+
+/// |D| <= eps_rel size^3 with |D| = det / 6, squared.
+double limit2(double eps_rel) { return 36 * eps_rel * eps_rel; }
+
+}  // namespace
+
+bool tet_diamond_block(const double* points, const TetDiamondInput* input, double eps_rel,
+                       TetDiamonds* const* tets, double (*volumes)[4]) {
+  Lanes lanes;
+  load(points, input, lanes);
+  compute(lanes, limit2(eps_rel));
+  return store(lanes, tets, volumes);
+}
+
+bool tet_diamond_block(const double* points, const TetDiamondInput* input, double eps_rel,
+                       const TetHalves& halves, TetDiamonds* const* tets,
+                       double* const* vertex_masses, double (*volumes)[4]) {
+  Lanes lanes;
+  load(points, input, lanes);
+  if (halves.moment_exact)
+    compute_moment_exact(lanes, limit2(eps_rel), eps_rel, halves);
+  else
+    compute_halves(lanes, limit2(eps_rel), eps_rel, halves);
+  for (int l = 0; l < kBlockTets; ++l)
+    for (int k = 0; k < 4; ++k) vertex_masses[l][k] = lanes.vertex_mass[k][l];
+  return store(lanes, tets, volumes);
 }
 
 }  // namespace carat

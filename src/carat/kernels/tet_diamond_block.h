@@ -20,6 +20,13 @@ struct TetDiamonds {
   double unused;
 };
 
+/// What the halves of diamonds differ in, as in diamond_split.h.
+struct TetHalves {
+  double jump;  ///< part of the jump's energy that counts: 1 - theta
+  bool moment_exact;
+  double tau;  ///< of the moment-exact mass
+};
+
 /// One tetrahedron of a block.
 struct TetDiamondInput {
   const Index* vertices;  ///< four ascending, then those across their faces, -1 at the boundary
@@ -33,5 +40,13 @@ struct TetDiamondInput {
 /// A face gets the same bits from both of its cells, wherever in a block they stand.
 bool tet_diamond_block(const double* points, const TetDiamondInput* input, double eps_rel,
                        TetDiamonds* const* tets, double (*volumes)[4]);
+
+/// The same with the jumps between the halves of diamonds and masses that tell them apart. The axis
+/// from tip to tip meets the face in one point, so the jumps of its three diamonds are one as well.
+/// \param vertex_masses  four of each tetrahedron, of its vertices, by their faces in this cell: 6 times the masses of
+///                       the faces around them where the mass is not moment-exact
+bool tet_diamond_block(const double* points, const TetDiamondInput* input, double eps_rel,
+                       const TetHalves& halves, TetDiamonds* const* tets,
+                       double* const* vertex_masses, double (*volumes)[4]);
 
 }  // namespace carat

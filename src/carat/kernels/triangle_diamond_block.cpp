@@ -13,9 +13,9 @@ constexpr double kThin = 4e-13;
 
 inline double larger(double a, double b) { return a > b ? a : b; }
 
-}  // namespace
-
-CARAT_MULTIVERSION void triangle_diamond_block(TriangleDiamondBlock& block, double eps_rel) {
+template <bool kCrossing>
+[[gnu::always_inline]] inline void compute(TriangleDiamondBlock& block, double eps_rel,
+                                           [[maybe_unused]] TriangleCrossingBlock* crossing) {
   for (int k = 0; k < kBlockDiamonds; ++k) {
     const double x = block.x[0][0][k], y = block.x[0][1][k], z = block.x[0][2][k];
     const double ex = block.x[1][0][k] - x, ey = block.x[1][1][k] - y, ez = block.x[1][2][k] - z;
@@ -44,7 +44,27 @@ CARAT_MULTIVERSION void triangle_diamond_block(TriangleDiamondBlock& block, doub
     block.alpha[k] = sound ? (0.5 * a2 + q * beta) * inverse : 0.0;
     block.area[k] = sound ? 0.5 * a2 : 0.0;
     block.thin[k] = (left <= kThin * length2) | (inner & (right <= kThin * length2)) ? 1.0 : 0.0;
+    if constexpr (kCrossing) {
+      const double sum = left + right, l = left / sum, r = right / sum;
+      crossing->left_fraction[k] = l;
+      crossing->right_fraction[k] = r;
+      crossing->foot[k] =
+          (r * (ex * sx + ey * sy + ez * sz) + l * (ex * tx + ey * ty + ez * tz)) * inverse / 3;
+      const bool jumps = sound & inner & (l > eps_rel) & (r > eps_rel);
+      crossing->stiffness[k] = jumps ? length2 * half / (l * r) : 0.0;
+    }
   }
+}
+
+}  // namespace
+
+CARAT_MULTIVERSION void triangle_diamond_block(TriangleDiamondBlock& block, double eps_rel) {
+  compute<false>(block, eps_rel, nullptr);
+}
+
+CARAT_MULTIVERSION void triangle_diamond_block(TriangleDiamondBlock& block, double eps_rel,
+                                               TriangleCrossingBlock& crossing) {
+  compute<true>(block, eps_rel, &crossing);
 }
 
 }  // namespace carat

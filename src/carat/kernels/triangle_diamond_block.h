@@ -24,6 +24,16 @@ struct TriangleDiamondBlock {
   alignas(64) double thin[kBlockDiamonds];
 };
 
+/// Where the diagonals of the diamonds of a block cross, as DiamondCrossing<2>. Nothing is said of
+/// degenerate diamonds and of those at the boundary.
+struct TriangleCrossingBlock {
+  alignas(64) double left_fraction[kBlockDiamonds];
+  alignas(64) double right_fraction[kBlockDiamonds];
+  alignas(64) double foot[kBlockDiamonds];  ///< from x1 in units of the hinge
+  /// Of the jump between the halves; 0 where there is none.
+  alignas(64) double stiffness[kBlockDiamonds];
+};
+
 /// The virtual vertices are the triangles' centroids: x_l - x_r = (o_l - o_r) / 3, and the halves
 /// of a diamond have a third of the triangles' areas.   [BBA21 (7), (12), (21)]
 ///
@@ -31,5 +41,8 @@ struct TriangleDiamondBlock {
 /// processor.
 /// \param eps_rel  as in diamond_2d
 void triangle_diamond_block(TriangleDiamondBlock& block, double eps_rel);
+/// The same, and where the diagonals cross.
+void triangle_diamond_block(TriangleDiamondBlock& block, double eps_rel,
+                            TriangleCrossingBlock& crossing);
 
 }  // namespace carat

@@ -84,22 +84,28 @@ VolumeDiamondPatterns diamond_patterns(const VolumeIncidence& mesh, const TetTop
 }
 
 bool compute_tet_diamonds(const Points& points, const VolumeIncidence& mesh,
-                          const TetTopology& tets, double eps_rel, int threads,
-                          Array<TetDiamonds>& terms, Vector& measures) {
+                          const TetTopology& tets, double eps_rel, const TetHalves* halves,
+                          int threads, TetDiamondTerms& terms, Vector& measures) {
   std::atomic<bool> sound = true;
-  terms.resize(tets.vertices.size());
+  terms.tets.resize(tets.vertices.size());
+  terms.vertex_masses.resize(halves ? tets.vertices.size() : 0);
   parallel_blocks(mesh.cells.n_rows(), threads, [&](int, Index begin, Index end) {
     for (Index first = begin; first < end; first += kBlockTets) {
       TetDiamondInput input[kBlockTets];
       TetDiamonds* out[kBlockTets];
+      double* vertex_masses[kBlockTets];
       double volumes[kBlockTets][4];
       for (Index l = 0; l < kBlockTets; ++l) {
         // A block that is not full repeats its last cell.
         const Index c = std::min(first + l, end - 1);
         input[l] = {tets.vertices[c].data(), static_cast<double>(tets.signs[c])};
-        out[l] = &terms[c];
+        out[l] = &terms.tets[c];
+        if (halves) vertex_masses[l] = terms.vertex_masses[c].data();
       }
-      if (!tet_diamond_block(points.data(), input, eps_rel, out, volumes)) sound = false;
+      if (!(halves ? tet_diamond_block(points.data(), input, eps_rel, *halves, out, vertex_masses,
+                                       volumes)
+                   : tet_diamond_block(points.data(), input, eps_rel, out, volumes)))
+        sound = false;
       for (Index c = first; c < std::min(first + kBlockTets, end); ++c)
         for (std::size_t k = 0; k < 4; ++k)
           if (const Index f = tets.measured_faces[c][k]; f >= 0)
@@ -111,7 +117,8 @@ bool compute_tet_diamonds(const Points& points, const VolumeIncidence& mesh,
 
 void assemble_tet_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_mass,
                            const VolumeIncidence& mesh, const TetTopology& tets,
-                           const Array<TetDiamonds>& terms, int threads) {
+                           const TetDiamondTerms& terms, int threads) {
+  const bool halves = !terms.vertex_masses.empty();
   const Index n_vertices = mesh.n_vertices();
   const Index* const offsets = stiffness.outerIndexPtr();
   const Index* const columns = stiffness.innerIndexPtr();
@@ -132,7 +139,7 @@ void assemble_tet_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lum
       for (const Index corner : mesh.vertex_cell_corners.row(row)) {
         const Index c = corner / 4;
         const std::array<Index, 8>& vertices = tets.vertices[c];
-        const TetDiamonds& term = terms[c];
+        const TetDiamonds& term = terms.tets[c];
         const std::size_t own = (vertices[1] == row ? 1U : 0U) + (vertices[2] == row ? 2U : 0U) +
                                 (vertices[3] == row ? 3U : 0U);
         // Of the faces at this vertex.
@@ -140,7 +147,8 @@ void assemble_tet_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lum
                               (term.face_mass[2] + term.face_mass[3]) - term.face_mass[own];
         // A vertex of a face has 6 times its pairs' mass by itself, and once more by the face
         // point.
-        diagonal_mass += term.cell_mass + 7 * around;
+        diagonal_mass +=
+            term.cell_mass + (halves ? around + terms.vertex_masses[c][own] : 7 * around);
         for (std::size_t step = 1; step < 4; ++step) {
           const std::size_t other = own ^ step;
           const double pair = term.pair[kPair[own][other]];

@@ -4,7 +4,8 @@
 // With weights 1/4 the vertices that two tetrahedra share cancel in x_r - x_l = (o_r - o_l) / 4, o
 // the vertices opposite to the face, and the three minimal diamonds of a face have one gradient. So
 // a face couples five vertices: its own, and the two opposite. A tetrahedron keeps the couplings
-// inside it, and one with the vertex across each face.
+// inside it, and one with the vertex across each face. The axes of the three diamonds meet the face
+// in one point, and so the jumps between their halves are one, of these five vertices as well.
 
 #include <array>
 
@@ -31,15 +32,24 @@ TetTopology tet_topology(const VolumeIncidence& mesh, int threads);
 VolumeDiamondPatterns diamond_patterns(const VolumeIncidence& mesh, const TetTopology& tets,
                                        int threads);
 
+/// What the diamonds add; kept between calls for its memory.
+struct TetDiamondTerms {
+  Array<TetDiamonds> tets;
+  /// Of their vertices, by their faces; empty where the halves of diamonds are alike: then 6 times
+  /// the masses of the faces around a vertex.  [length^3]
+  Array<std::array<double, 4>> vertex_masses;
+};
+
 /// Couplings of all tetrahedra, and the measures of the minimal diamonds by corner of the faces.
+/// \param halves  if given: what the halves of diamonds differ in
 /// \return whether all tetrahedra have a volume
 bool compute_tet_diamonds(const Points& points, const VolumeIncidence& mesh,
-                          const TetTopology& tets, double eps_rel, int threads,
-                          Array<TetDiamonds>& terms, Vector& measures);
+                          const TetTopology& tets, double eps_rel, const TetHalves* halves,
+                          int threads, TetDiamondTerms& terms, Vector& measures);
 
 /// Fills stiffness and mass (whose pattern may be diagonal: then with the row sums).
 void assemble_tet_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_mass,
                            const VolumeIncidence& mesh, const TetTopology& tets,
-                           const Array<TetDiamonds>& terms, int threads);
+                           const TetDiamondTerms& terms, int threads);
 
 }  // namespace carat

@@ -7,6 +7,7 @@
 
 #include "carat/assembly/triangle_diamond_assembly.h"
 #include "carat/base/parallel.h"
+#include "carat/kernels/diamond_split.h"
 #include "carat/kernels/triangle_diamond_block.h"
 #include "carat/operators/common.h"
 #include "carat/prolongation/virtual_vertices.h"
@@ -41,13 +42,18 @@ class TriangleDiamondAssembly final : public Assembly {
   };
   Diamond diamond(Index e) const;
   void compute_terms(const Points& points);
-  void compute_block(const Points& points, Index first, Index size, Block& block);
+  void gather(const Points& points, Index first, Index size, Block& block) const;
+  void set_halves(Index e, double scale, const Block& block, const TriangleCrossingBlock& crossing,
+                  Index lane);
   Array<double> coefficients(const Points& points) const;
   void report(const Points& points);
 
   PolygonMesh mesh_;
   DiscretizationOptions options_;
   bool lumped_ = options_.mass == MassKind::Lumped;
+  bool moment_exact_ = options_.mass == MassKind::MomentExact;
+  double theta_ = options_.theta.value_or(1.0);
+  bool halves_ = theta_ < 1 || moment_exact_;  // of diamonds differ
   TriangleIncidence incidence_;
   TriangleDiamondSources sources_;
   TriangleDiamondTerms terms_;
@@ -69,8 +75,8 @@ inline TriangleDiamondAssembly::Diamond TriangleDiamondAssembly::diamond(Index e
   return result;
 }
 
-void TriangleDiamondAssembly::compute_block(const Points& points, Index first, Index size,
-                                            Block& block) {
+void TriangleDiamondAssembly::gather(const Points& points, Index first, Index size,
+                                     Block& block) const {
   const double* const x = points.data();
   for (Index k = 0; k < size; ++k) {
     const Diamond d = diamond(first + k);
@@ -81,29 +87,78 @@ void TriangleDiamondAssembly::compute_block(const Points& points, Index first, I
     for (int i = 0; i < 4; ++i)
       for (int c = 0; c < 3; ++c) block.x[i][c][k] = at[i][c];
   }
-  triangle_diamond_block(block, options_.eps_rel);
+}
+
+/// With u_l = (u1 + u2 + o_l) / 3 the jump is c . (u1, u2, o_l, o_r); masses of its four vertices.
+void TriangleDiamondAssembly::set_halves(Index e, double scale, const Block& block,
+                                         const TriangleCrossingBlock& crossing, Index lane) {
+  const Index n_edges = mesh_.n_edges();
+  const Index left = incidence_.edge_corners.begin(e), right = left + 1;
+  TriangleDiamondTerms::Half& to_left = terms_.halves[incidence_.edge_corners.indices[left]];
+  const double beta = scale * block.beta[lane] / 3, area = block.area[lane];
+  to_left.start = beta;
+  to_left.end = -beta;
+  if (!(block.inner[lane] > 0)) {
+    to_left.tip = area / 27;
+    terms_.ends[e] = {area / 3, area / 3};
+    return;
+  }
+  TriangleDiamondTerms::Half& to_right = terms_.halves[incidence_.edge_corners.indices[right]];
+  to_right.start = beta;
+  to_right.end = -beta;
+  if (!(area > 0)) {
+    to_left.tip = to_right.tip = 0;
+    terms_.ends[e] = {0, 0};
+    return;
+  }
+  const double l = crossing.left_fraction[lane], r = crossing.right_fraction[lane];
+  const double foot = crossing.foot[lane];
+  const double jump = (1 - theta_) * scale * crossing.stiffness[lane];
+  const double at_1 = foot - 2.0 / 3, at_2 = 1.0 / 3 - foot, at_left = r / 3, at_right = l / 3;
+  terms_.values[e] += jump * at_1 * at_2;
+  terms_.values[n_edges + e] += jump * at_left * at_right;
+  to_left.start += jump * at_1 * at_left;
+  to_left.end += jump * at_2 * at_left;
+  to_right.start += jump * at_2 * at_right;
+  to_right.end += jump * at_1 * at_right;
+  DiamondMass<2> mass{{0.25, 0.25}, 0.25, 0.25};
+  if (moment_exact_) mass = moment_exact_mass<2>({r, l, {1 - foot, foot}, 0, l}, *options_.tau);
+  to_left.tip = area * mass.left / 9;
+  to_right.tip = area * mass.right / 9;
+  const bool ascending = incidence_.faces.indices[incidence_.edge_corners.indices[left]] ==
+                         incidence_.edge_vertices[e][0];
+  terms_.ends[e] = {area * mass.base[ascending ? 0 : 1], area * mass.base[ascending ? 1 : 0]};
 }
 
 void TriangleDiamondAssembly::compute_terms(const Points& points) {
   const Index n_edges = mesh_.n_edges();
-  terms_.resize(n_edges, sources_);
+  terms_.resize(n_edges, mesh_.n_corners(), halves_, sources_);
   if (options_.coefficient) coefficient_ = coefficients(points);
   std::atomic<bool> any_excluded{false}, any_thin{false};
   parallel_blocks(n_edges, options_.threads, [&](int, Index begin, Index end) {
     Block block{};  // lanes without a diamond hold numbers as well
+    TriangleCrossingBlock crossing;
     bool excluded = false, thin = false;
     for (Index first = begin; first < end; first += kBlockDiamonds) {
       const Index size = std::min<Index>(kBlockDiamonds, end - first);
-      compute_block(points, first, size, block);
+      gather(points, first, size, block);
+      if (halves_)
+        triangle_diamond_block(block, options_.eps_rel, crossing);
+      else
+        triangle_diamond_block(block, options_.eps_rel);
       for (Index k = 0; k < size; ++k) {
         const Index e = first + k;
         const double scale = coefficient_.empty() ? 1.0 : coefficient_[e];
-        // The literal quarter of (23) would lose a quarter of every boundary diamond, which has
-        // three vertices.   [BBA21 (23)]
-        const double share = block.inner[k] > 0 ? 1.0 / 36 : 1.0 / 27;
-        terms_.around[e] = {scale * block.beta[k] / 3, share * block.area[k]};
         terms_.values[e] = -scale * block.alpha[k];
         terms_.values[n_edges + e] = -scale * block.gamma[k] / 9;
+        if (halves_) {
+          set_halves(e, scale, block, crossing, k);
+        } else {
+          // The literal quarter of (23) would lose a quarter of every boundary diamond, which has
+          // three vertices.   [BBA21 (23)]
+          const double share = block.inner[k] > 0 ? 1.0 / 36 : 1.0 / 27;
+          terms_.around[e] = {scale * block.beta[k] / 3, share * block.area[k]};
+        }
         result_.sample_measure[e] = block.area[k];
         excluded |= !(block.area[k] > 0);
         thin |= block.thin[k] > 0;

@@ -8,8 +8,8 @@
 
 namespace carat {
 
-/// The diamond Laplacian in closed form.
-/// \param options  settled; parts must be Matrices, the mass Full or Lumped
+/// The diamond Laplacian in closed form, as the paper has it or stabilised.
+/// \param options  settled; parts must be Matrices
 /// \return null where the mesh is not one of triangles that are oriented alike, at most two an edge
 std::unique_ptr<Assembly> make_triangle_diamond(const char* name, const PolygonMesh& mesh,
                                                 const DiscretizationOptions& options);

@@ -438,11 +438,11 @@ void DiamondAssembly<Term>::update(const Points& points) {
 
 std::unique_ptr<Assembly> make_diamond(const char* name, const PolygonMesh& mesh,
                                        const DiscretizationOptions& options) {
-  if (options.theta.value_or(1.0) < 1 || options.mass == MassKind::MomentExact)
-    return std::make_unique<DiamondAssembly<GeneralDiamondTerm>>(name, mesh, options);
   if (options.parts == DiscretizationParts::Matrices && options.form == OperatorForm::Matrices)
     if (std::unique_ptr<Assembly> triangles = make_triangle_diamond(name, mesh, options))
       return triangles;
+  if (options.theta.value_or(1.0) < 1 || options.mass == MassKind::MomentExact)
+    return std::make_unique<DiamondAssembly<GeneralDiamondTerm>>(name, mesh, options);
   return std::make_unique<DiamondAssembly<DiamondTerm>>(name, mesh, options);
 }
 

@@ -80,9 +80,9 @@ class VolumeDiamondAssembly final : public Assembly {
   CellRings rings_;
   VirtualCells virtuals_;
   VolumeDiamondWorkspace workspace_;
-  bool tets_;  // all cells are tetrahedra, K = 1, nothing beyond the paper: the closed form serves
+  bool tets_;  // all cells are tetrahedra, K = 1: the closed form serves
   TetTopology tet_topology_;
-  Array<TetDiamonds> tet_diamonds_;
+  TetDiamondTerms tet_diamonds_;
   Vec3 origin_ = Vec3::Zero();
   Points points_;  // relative to the origin, so that no accuracy is lost far from it
 };
@@ -93,7 +93,7 @@ VolumeDiamondAssembly::VolumeDiamondAssembly(const char* name, const PolyhedralM
   check_cell_coefficient(options_, mesh_.n_cells());
   result_.name = name;
   const bool products = options_.form == OperatorForm::Products;
-  tets_ = !products && plain() && !options_.coefficient && options_.cell_coefficient.size() == 0 &&
+  tets_ = !products && !options_.coefficient && options_.cell_coefficient.size() == 0 &&
           mesh_.n_cells() > 0 && all_tetrahedra(incidence_);
   VolumeDiamondPatterns patterns;
   if (tets_) {
@@ -450,9 +450,11 @@ void VolumeDiamondAssembly::report() {
 
 void VolumeDiamondAssembly::update(const Points& points) {
   centre_points(points, points_, origin_);
+  const TetHalves halves{1 - theta_, moment_exact_, options_.tau.value_or(0.0)};
   const bool all_sound =
       tets_ && compute_tet_diamonds(points_, incidence_, tet_topology_, options_.eps_rel,
-                                    options_.threads, tet_diamonds_, result_.sample_measure);
+                                    plain() ? nullptr : &halves, options_.threads, tet_diamonds_,
+                                    result_.sample_measure);
   if (!all_sound || options_.parts >= DiscretizationParts::Gradient) {
     update_virtual_cells(mesh_, points_, options_.virtual_vertex, options_.threads, virtuals_);
   } else {
