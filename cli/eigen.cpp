@@ -83,6 +83,7 @@ void find_modes(Session& session, const Options& options, Data& data) {
     };
     return eigenmodes(discretization, options.count, fixed, solver);
   });
+  session.moved("solve", pairs.traffic);
   session.report()["options"]["count"] = options.count;
   session.report()["options"]["dirichlet"] = options.dirichlet;
   report_pairs(session, pairs);

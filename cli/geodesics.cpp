@@ -149,6 +149,7 @@ void measure_each(Session& session, const Options& options, Data& data,
     session.phase("solve", [&](ProgressLine& line) {
       geodesics.distances(sets, [&](Index set, GeodesicDistance&& distance) {
         summary.add(distance);
+        session.moved("solve", distance.traffic);
         use(set, std::move(distance.values));
         line.show("solve " + std::to_string(set + 1) + " of " + std::to_string(sets.size()));
         return true;
@@ -198,6 +199,10 @@ void measure(Session& session, const Options& options, Data& data) {
                          {options.t_coef, length, directions, solver});
   });
 
+  // Of the heat also the matrix.
+  session.moved("factor", setup_bytes(geodesics.poisson_info()) +
+                              setup_bytes(geodesics.heat_info()) +
+                              static_cast<double>(geodesics.heat_info().operator_bytes));
   Json& report = session.report();
   if (!options.sources.empty()) report["options"]["sources"] = options.sources;
   if (!options.sources_file.empty()) report["options"]["sources_file"] = options.sources_file;
@@ -222,6 +227,7 @@ void measure(Session& session, const Options& options, Data& data) {
   }
   const GeodesicDistance distance =
       session.phase("solve", [&] { return geodesics.distance(sets.front()); });
+  session.moved("solve", distance.traffic);
   report_distance(session, distance);
   if (options.output.empty()) return;
   data.fields.vertex = {scalar_field("distance", distance.values)};

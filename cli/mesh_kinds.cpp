@@ -34,24 +34,54 @@ PolyhedralMesh underived(const PolyhedralMesh& mesh) {
 
 namespace {
 
-double assembly_bytes(Index n_vertices, double connectivity, const Discretization& d) {
+double n_entries(const Discretization& d) {
+  return static_cast<double>(d.stiffness.nonZeros()) + static_cast<double>(d.mass.nonZeros()) +
+         static_cast<double>(d.gradient.nonZeros());
+}
+
+double connectivity_bytes(const PolygonMesh& mesh) {
+  return static_cast<double>(sizeof(Index)) * mesh.n_corners();
+}
+
+double connectivity_bytes(const PolyhedralMesh& mesh) {
+  return connectivity_bytes(mesh.face_mesh()) +
+         static_cast<double>(sizeof(Index) * mesh.cells().indices.size());
+}
+
+template <class Mesh>
+double numeric_bytes(const Mesh& mesh, const Discretization& d) {
   constexpr double kPoint = 3 * sizeof(double), kEntry = sizeof(double) + sizeof(Index);
-  const double entries = static_cast<double>(d.stiffness.nonZeros()) +
-                         static_cast<double>(d.mass.nonZeros()) +
-                         static_cast<double>(d.gradient.nonZeros());
-  return kPoint * n_vertices + sizeof(Index) * connectivity + kEntry * entries;
+  double bytes = kPoint * mesh.n_vertices() + connectivity_bytes(mesh) + kEntry * n_entries(d);
+  for (const auto& product : {d.stiffness_product, d.mass_product})
+    if (product) bytes += static_cast<double>(product->bytes());
+  return bytes;
+}
+
+template <class Mesh>
+double pattern_bytes(const Mesh& mesh, const Discretization& d) {
+  return connectivity_bytes(mesh) + static_cast<double>(sizeof(Index)) * n_entries(d);
 }
 
 }  // namespace
 
+double symbolic_bytes(const PolygonMesh& mesh, const Discretization& discretization) {
+  return pattern_bytes(mesh, discretization);
+}
+
+double symbolic_bytes(const PolyhedralMesh& mesh, const Discretization& discretization) {
+  return pattern_bytes(mesh, discretization);
+}
+
 double assembly_bytes(const PolygonMesh& mesh, const Discretization& discretization) {
-  return assembly_bytes(mesh.n_vertices(), mesh.n_corners(), discretization);
+  return numeric_bytes(mesh, discretization);
 }
 
 double assembly_bytes(const PolyhedralMesh& mesh, const Discretization& discretization) {
-  const double connectivity =
-      mesh.face_mesh().n_corners() + static_cast<double>(mesh.cells().indices.size());
-  return assembly_bytes(mesh.n_vertices(), connectivity, discretization);
+  return numeric_bytes(mesh, discretization);
+}
+
+double setup_bytes(const SolverInfo& solver) {
+  return static_cast<double>(sizeof(double) + sizeof(Index)) * static_cast<double>(solver.nonzeros);
 }
 
 BoundarySide boundary_side(const PolygonMesh& mesh, Index edge) {

@@ -7,6 +7,7 @@
 
 #include "carat/io/mesh_file.h"
 #include "carat/operators/registry.h"
+#include "carat/solve/spd_solver.h"
 #include "cli/session.h"
 
 namespace carat::cli {
@@ -70,10 +71,15 @@ BoundarySide boundary_side(const PolyhedralMesh& mesh, Index face);
 PolygonMesh underived(const PolygonMesh& mesh);
 PolyhedralMesh underived(const PolyhedralMesh& mesh);
 
+/// What the symbolic phase has to move at least: connectivity, and the columns of every matrix.
+double symbolic_bytes(const PolygonMesh& mesh, const Discretization& discretization);
+double symbolic_bytes(const PolyhedralMesh& mesh, const Discretization& discretization);
 /// What the numeric phase has to move at least: points and connectivity once, of every matrix the
-/// columns read and the values written.
+/// columns read and the values written, or what products read in its place.
 double assembly_bytes(const PolygonMesh& mesh, const Discretization& discretization);
 double assembly_bytes(const PolyhedralMesh& mesh, const Discretization& discretization);
+/// What setting a solver up has to write at least: its factor or preconditioner.
+double setup_bytes(const SolverInfo& solver);
 
 /// Edges of one face, faces of one cell; ascending.
 std::vector<Index> boundary_sides(const PolygonMesh& mesh);

@@ -187,6 +187,7 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
     throw as_option(error);
   }
   Discretization discretization = assembly->release();
+  session.moved("symbolic", symbolic_bytes(mesh, discretization));
   session.moved("numeric", assembly_bytes(mesh, discretization));
 
   session.report()["options"] = to_json(entry.name, entry.options, entry.settle(library_options));

@@ -140,18 +140,6 @@ void report_solution(Session& session, const SolverInfo& info, const PoissonSolu
                 text(solution.imbalance) + ", subtracted");
 }
 
-/// What the solver has to move at least: its factor or preconditioner is written once, 12 bytes an
-/// entry; a factor is read twice for a right-hand side, an iteration reads the operator and the
-/// preconditioner, of which multigrid goes down and up with 8 bytes an entry.
-void report_traffic(Session& session, const SolverInfo& info, const SolveReport& how) {
-  const auto entries = static_cast<double>(info.nonzeros);
-  session.moved("factor", 12 * entries);
-  session.moved("solve",
-                how.iterations > 0
-                    ? how.iterations * (static_cast<double>(info.operator_bytes) + 16 * entries)
-                    : 16 * entries);
-}
-
 void report_conditions(Session& session, const BoundaryConditions& conditions,
                        const std::string& side) {
   Json& sizes = session.report()["sizes"];
@@ -188,7 +176,8 @@ void solve(Session& session, const Options& options, const Given& given, Data& d
   report_conditions(session, conditions, words(data.mesh).side);
   const Vector u = solution.values.head(data.mesh.n_vertices());
   report_solution(session, poisson.solver(), solution, u);
-  report_traffic(session, poisson.solver(), solution.solve);
+  session.moved("factor", setup_bytes(poisson.solver()));
+  session.moved("solve", solution.solve.traffic);
   data.fields.vertex = {scalar_field("u", u)};
   element_fields(data).clear();
   if (given.exact)

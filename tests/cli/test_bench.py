@@ -71,6 +71,43 @@ class Profile(CaratTest):
         self.assertGreater(report["profile"]["numeric"]["bytes"], 12 * entries)
         self.assertGreater(report["peak_memory"], 1e6)
 
+    def bytes_of_all_phases(self, *arguments):
+        report = self.report(*arguments)
+        for phase, cost in report["profile"].items():
+            self.assertGreater(cost["bytes"] or 0, 0, phase)
+            self.assertGreater(cost["GB_per_s"], 0, phase)
+        return report, {phase: cost["bytes"] for phase, cost in report["profile"].items()}
+
+    def test_products_without_matrices_count_in_the_numeric_phase_and_in_the_solver(self):
+        self.generate("plane-voronoi", 4)
+        report, moved = self.bytes_of_all_phases(
+            "poisson", "mesh.ply", "--rhs", "1", "--dirichlet", "0", "--solver", "multigrid",
+            "--operator", "diamond")
+        solver = report["solver"]
+        self.assertFalse(solver["assembled"])
+        sizes = report["sizes"]
+        self.assertGreater(moved["numeric"], solver["operator_bytes"] + 24 * sizes["vertices"])
+        self.assertEqual(moved["solve"], solver["iterations"] *
+                         (solver["operator_bytes"] + 16 * solver["factor_nnz"]))
+
+    def test_eigenpairs_and_distances_have_bytes_in_all_phases(self):
+        self.generate("plane-quads", 3)
+        self.generate("cube-hexahedra", 3, name="cube.vtu")
+        report, few = self.bytes_of_all_phases("eigen", "mesh.ply", "-k", "5")
+        self.assertGreater(few["solve"], 16 * report["solver"]["factor_nnz"])
+        many = self.bytes_of_all_phases("eigen", "mesh.ply", "-k", "40")[1]
+        self.assertGreater(many["solve"], few["solve"])
+        self.bytes_of_all_phases("eigen", "cube.vtu", "-k", "2", "--solver", "iterative")
+        report, one = self.bytes_of_all_phases("geodesics", "mesh.ply", "--source", "0")
+        self.assertGreater(one["solve"], 16 * report["solver"]["factor_nnz"])
+        self.assertGreater(one["factor"], 12 * report["solver"]["factor_nnz"])
+        # Several sets read the factors together.
+        sources = [word for v in range(8) for word in ("--source", str(v))]
+        each = self.bytes_of_all_phases("geodesics", "mesh.ply", "--each", *sources)[1]
+        self.assertGreater(each["solve"], one["solve"])
+        self.assertLess(each["solve"], 8 * one["solve"])
+        self.bytes_of_all_phases("geodesics", "cube.vtu", "--source", "0", "--solver", "multigrid")
+
 
 if __name__ == "__main__":
     main()

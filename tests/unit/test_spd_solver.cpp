@@ -105,6 +105,12 @@ TEST(SpdSolver, advances_right_hand_sides_together) {
     SolveReport report;
     const Matrix solution = solver.solve(b, &report);
     EXPECT_LT(report.residual, 1e-10);
+    // Eight at a time.
+    EXPECT_GE(report.passes, report.iterations);
+    EXPECT_EQ(report.passes > report.iterations, b.cols() > 8);
+    EXPECT_LE(report.passes, 2 * report.iterations);
+    EXPECT_EQ(report.traffic, report.passes * (static_cast<double>(solver.info().operator_bytes) +
+                                               16.0 * static_cast<double>(solver.info().nonzeros)));
     return solution;
   };
   const Matrix together = solve(rhs, 1);

@@ -11,6 +11,7 @@
 #include "carat/operators/common.h"
 #include "carat/operators/registry.h"
 #include "carat/solve/componentwise.h"
+#include "carat/solve/matrix_operator.h"
 #include "carat/solve/semidefinite_solver.h"
 
 namespace carat {
@@ -60,15 +61,15 @@ class Diffusion {
              .method = "conjugate gradients to componentwise accuracy",
              .reason = iterate ? "as Poisson's equation" : info_.reason,
              .ordering = {},
-             .nonzeros = matrix_->rows()};
+             .nonzeros = matrix_->rows(),
+             .operator_bytes = MatrixOperator(matrix_).bytes()};
   }
 
   bool is_factorised() const { return factor_ != nullptr; }
   const SolverInfo& info() const { return info_; }
 
-  Matrix solve(const Matrix& heat) const {
-    if (factor_) return factor_->solve(heat);
-    SolveReport report;
+  Matrix solve(const Matrix& heat, SolveReport& report) const {
+    if (factor_) return factor_->solve(heat, &report);
     return solve_componentwise(*matrix_, excluded_, heat, threads_, report);
   }
 
@@ -182,13 +183,17 @@ struct HeatGeodesics::Impl {
     const Index k = static_cast<Index>(sets.size());
     Matrix values(n_vertices(), k);
     for (Index i = 0; i < k; ++i) place(sets[i], values.col(i));
-    values = diffusion->solve(values);
+    SolveReport of_heat, of_distance;
+    values = diffusion->solve(values, of_heat);
     parallel_tasks(k, inner_threads, [&](Index i) {
       values.col(i) = divergence(sets[i], values.col(i), results[i]);
     });
-    values = poisson->solve(std::move(values));
+    values = poisson->solve(std::move(values), &of_distance);
+    const double of_gradient = 2.0 * static_cast<double>(sizeof(double) + sizeof(Index)) *
+                               static_cast<double>(discretization->gradient.nonZeros());
     parallel_tasks(k, inner_threads, [&](Index i) {
       results[i].values = values.col(i);
+      results[i].traffic = (of_heat.traffic + of_distance.traffic) / k + of_gradient;
       finish(sets[i], results[i]);
     });
   }

@@ -43,6 +43,9 @@ struct GeodesicDistance {
   std::vector<Index> unreachable_vertices;
   /// Gradient samples where the heat is below the smallest number, so that no direction is known.
   Index unresolved_samples = 0;
+  /// Bytes read at least: those of both solutions, as SolveReport::traffic, and the gradient twice.
+  /// Of source sets that are solved together, each has its share.
+  double traffic = 0;
 };
 
 /// The heat method on one mesh; what solves its two systems is kept for any number of source sets.

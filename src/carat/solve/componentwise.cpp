@@ -89,6 +89,10 @@ class Iteration {
                           std::to_string(worst.maxCoeff()) + " of its row after " +
                           std::to_string(iterations) + " iterations, at most 1e-10 is a solution");
     report.iterations = std::max(report.iterations, iterations);
+    report.passes += iterations;
+    report.traffic += iterations * (static_cast<double>(a_.nonZeros()) *
+                                        static_cast<double>(sizeof(double) + sizeof(Index)) +
+                                    static_cast<double>(sizeof(double)) * a_.rows());
     report.residual = std::max(report.residual, worst.maxCoeff());
     Matrix result(a_.rows(), W);
     for (std::size_t i = 0; i < n; ++i)

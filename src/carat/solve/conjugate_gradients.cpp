@@ -142,6 +142,7 @@ class Iterations {
       advance();
       compute_residuals(restart == kRestarts);
     }
+    Index passes = 0;
     for (const State& state : state_) {
       if (!(state.norm > 0)) continue;
       if (!(state.residual <= limits_.accepted + state.rounding))
@@ -152,7 +153,9 @@ class Iterations {
                             " is a solution; residuals by iteration: " + course(state.history));
       report.iterations = std::max(report.iterations, static_cast<Index>(state.history.size()) - 1);
       report.residual = std::max(report.residual, state.residual);
+      passes = std::max(passes, static_cast<Index>(state.history.size()) - 1);
     }
+    report.passes += passes;
     return as_rows(x_);
   }
 

@@ -14,6 +14,12 @@ struct SolveReport {
   std::string method;    ///< as SolverInfo::method; the factorisation's where it had to take over
   Index iterations = 0;  ///< of the worst right-hand side; 0: a factorisation
   double residual = 0;   ///< |b - A x| / |b|, computed anew from the solution, the worst one
+  /// Iterations of all groups of right-hand sides that advance together: so often the matrix and
+  /// the preconditioner were read.
+  Index passes = 0;
+  /// Bytes read at least: in every pass the operator and 16 an entry of the preconditioner, of
+  /// which multigrid goes down and up; of a factor 16 an entry, once for all right-hand sides.
+  double traffic = 0;
 };
 
 /// One iteration's limits.

@@ -93,6 +93,8 @@ class Pencil final : public InverseOperator {
   Index n_zero() const { return static_cast<Index>(floating.size()); }
 
   Matrix mass_product(const Eigen::Ref<const Matrix>& x) const override {
+    traffic_ +=
+        static_cast<double>(sizeof(double) + sizeof(Index)) * static_cast<double>(m.nonZeros());
     return sparse_product(m, x, threads_);
   }
 
@@ -103,10 +105,12 @@ class Pencil final : public InverseOperator {
     Matrix x;
     if (factor_) {
       x = factor_->solve(b);
+      traffic_ += 2.0 * sizeof(double) * static_cast<double>(factor_->info().nonzeros);
     } else {
       SolveReport report;
       x = iteration_->solve(b, &report);
       iterations_ += report.iterations;
+      traffic_ += report.traffic;
     }
     project(x);
     return x;
@@ -135,6 +139,7 @@ class Pencil final : public InverseOperator {
     return info;
   }
   Index iterations() const { return iterations_; }
+  double traffic() const { return traffic_; }
 
   /// Solves by conjugate gradients from now on.
   void prepare_iteration(const EigenOptions& options) {
@@ -188,6 +193,7 @@ class Pencil final : public InverseOperator {
   std::unique_ptr<Cholesky> factor_;
   std::unique_ptr<SpdSolver> iteration_;
   mutable Index iterations_ = 0;
+  mutable double traffic_ = 0;
   int threads_;
 };
 
@@ -318,6 +324,14 @@ bool fits_iteration(const Pencil& pencil, Index count) {
          krylov_dimension(count) <= pencil.size() - pencil.n_zero() - kSpareDimensions;
 }
 
+/// \param basis  how many vectors were held
+void count_traffic(const Pencil& pencil, Index basis, EigenPairs& result) {
+  result.traffic = pencil.traffic() +
+                   static_cast<double>(sizeof(double) + sizeof(Index)) *
+                       static_cast<double>(result.factor.nonzeros) +
+                   static_cast<double>(sizeof(double)) * pencil.size() * basis;
+}
+
 /// The `count` pairs after the zero modes, by the inverse that the pencil has been given.
 void solve_by_lanczos(const Pencil& pencil, Index count, const EigenOptions& options,
                       EigenPairs& result, Matrix& vectors) {
@@ -333,6 +347,7 @@ void solve_by_lanczos(const Pencil& pencil, Index count, const EigenOptions& opt
   vectors = std::move(pairs.vectors);
   result.solves = pairs.solves + refine(pencil, result.values, vectors);
   result.iterations = pencil.iterations();
+  count_traffic(pencil, basis, result);
 }
 
 void solve_by_factorisation(Pencil& pencil, Index count, const EigenOptions& options,
@@ -350,6 +365,7 @@ void solve_by_factorisation(Pencil& pencil, Index count, const EigenOptions& opt
                         " unknowns; above " + std::to_string(kMaxDense) +
                         " unknowns at most about half of the spectrum can be had");
   solve_dense(pencil, count, result.values, vectors);
+  count_traffic(pencil, pencil.size(), result);
 }
 
 void solve_by_iteration(Pencil& pencil, Index count, const EigenOptions& options,

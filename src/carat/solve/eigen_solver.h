@@ -51,6 +51,9 @@ struct EigenPairs {
   Index solves = 0;
   /// Of the factor or multigrid and of all vectors held at a time, without the matrices.
   std::int64_t bytes = 0;
+  /// Bytes read and written at least: the factor or multigrid once, what each solve reads, as
+  /// SolveReport::traffic, with the mass, and the basis once.
+  double traffic = 0;
   FactorInfo factor;  ///< also of the multigrid's levels
 };
 

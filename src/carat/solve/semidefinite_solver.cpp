@@ -30,7 +30,7 @@ SemidefiniteSolver::SemidefiniteSolver(std::shared_ptr<const SparseMatrix> matri
   solver_ = std::make_unique<SpdSolver>(std::move(matrix), std::move(fixed), options);
 }
 
-Matrix SemidefiniteSolver::solve(Matrix rhs) const {
+Matrix SemidefiniteSolver::solve(Matrix rhs, SolveReport* report) const {
   const auto remove_means = [&](Matrix& values) {
     for (Eigen::Index k = 0; k < values.cols(); ++k) {
       std::vector<double> sum(sizes_.size(), 0.0);
@@ -49,7 +49,7 @@ Matrix SemidefiniteSolver::solve(Matrix rhs) const {
     throw InvalidOption("a right-hand side of " + std::to_string(rhs.rows()) + " rows for " +
                         std::to_string(components_.size()) + " unknowns");
   remove_means(rhs);
-  Matrix result = solver_->solve(rhs);
+  Matrix result = solver_->solve(rhs, report);
   remove_means(result);
   return result;
 }

@@ -24,9 +24,10 @@ class SemidefiniteSolver {
       : SemidefiniteSolver(std::make_shared<SparseMatrix>(matrix), {.kind = SolverKind::Cholesky}) {
   }
 
-  /// \param rhs  (n, k). Its mean over each component is subtracted: see imbalance().
+  /// \param rhs     (n, k). Its mean over each component is subtracted: see imbalance().
+  /// \param report  if given: how it went
   /// \return (n, k), mean zero over each component
-  Matrix solve(Matrix rhs) const;
+  Matrix solve(Matrix rhs, SolveReport* report = nullptr) const;
 
   /// |sum of rhs| / sum |rhs| over the worst component: 0 for a compatible right-hand side.
   double imbalance(const Vector& rhs) const;

@@ -24,6 +24,8 @@ constexpr Index kManyInVolumes = 60;
 // is far from the matrix (concave faces, coefficients that jump inside diamonds) it takes hundreds,
 // and the matrix itself is the better one to precondition with.
 constexpr Index kPatience = 100;
+/// What a solution reads of a factor, forwards and backwards, or of a preconditioner: the values.
+constexpr double kBytesReadAnEntry = 2 * sizeof(double);
 /// Part of the free memory that a factor may take.
 constexpr double kMemoryShare = 0.5;
 
@@ -255,13 +257,18 @@ struct SpdSolver::Impl {
   Matrix solve(const Matrix& rhs, SolveReport& report) const {
     report.method = took_over.empty() ? info.method : took_over;
     if (!direct) try {
-        return iterate(rhs, report);
+        Matrix result = iterate(rhs, report);
+        report.traffic =
+            report.passes * (static_cast<double>(a->bytes()) +
+                             kBytesReadAnEntry * static_cast<double>(preconditioner->nonzeros()));
+        return result;
       } catch (const SolverFailure&) {
         if (options.kind != SolverKind::Auto || !rhs.allFinite()) throw;
         report = {};
         factorise();
       }
     report.method = direct->info().method;
+    report.traffic = kBytesReadAnEntry * static_cast<double>(direct->info().nonzeros);
     Matrix result = direct->solve(rhs);
     Vector product(rhs.rows());
     for (Eigen::Index k = 0; k < rhs.cols(); ++k) {
