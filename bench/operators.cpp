@@ -65,7 +65,7 @@ void measure(benchmark::State& state, const Entry& entry, const Mesh& mesh) {
   const auto start = std::chrono::steady_clock::now();
   const auto assembly = entry.prepare(mesh, options);
   const double symbolic = seconds_since(start);
-  for ([[maybe_unused]] auto unused : state) assembly->update(mesh.points());
+  for ([[maybe_unused]] auto unused : state) assembly->reassemble(mesh.points());
   const Discretization d = assembly->release();
   const auto before = std::chrono::steady_clock::now();
   const double error = solve(mesh, d);

@@ -69,12 +69,12 @@ void symbolic(benchmark::State& state, const std::string& kind) {
   }
 }
 
-void time_updates(benchmark::State& state, const PolyhedralMesh& mesh, int threads) {
+void time_reassembly(benchmark::State& state, const PolyhedralMesh& mesh, int threads) {
   const auto assembly = volume_operator("diamond").prepare(mesh, matrices_only(threads));
-  assembly->update(mesh.points());
+  assembly->reassemble(mesh.points());
   for (auto _ : state) {
     const double start = now();
-    assembly->update(mesh.points());
+    assembly->reassemble(mesh.points());
     state.SetIterationTime(now() - start);
   }
   state.counters["a diamond"] = benchmark::Counter(
@@ -83,12 +83,12 @@ void time_updates(benchmark::State& state, const PolyhedralMesh& mesh, int threa
 }
 
 void numeric(benchmark::State& state, const std::string& kind) {
-  time_updates(state, mesh_of(kind, n_vertices()), static_cast<int>(state.range(0)));
+  time_reassembly(state, mesh_of(kind, n_vertices()), static_cast<int>(state.range(0)));
 }
 
 /// The range is the number of vertices.
 void numeric_of_size(benchmark::State& state, const std::string& kind) {
-  time_updates(state, mesh_of(kind, static_cast<Index>(state.range(0))), 1);
+  time_reassembly(state, mesh_of(kind, static_cast<Index>(state.range(0))), 1);
 }
 
 /// The peak of a whole process that reads nothing but `kind`: with derived connectivity and all.

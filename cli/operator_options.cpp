@@ -182,7 +182,7 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
   const std::unique_ptr<Assembly> assembly =
       session.phase("symbolic", [&] { return entry.prepare(mesh, library_options); });
   try {
-    session.phase("numeric", [&] { assembly->update(mesh.points()); });
+    session.phase("numeric", [&] { assembly->reassemble(mesh.points()); });
   } catch (const DegenerateElement& error) {
     throw as_option(error);
   }

@@ -20,7 +20,7 @@ class ToyAssembly final : public Assembly {
     result_.mass = diagonal_pattern(mesh_.n_vertices());
   }
 
-  void update(const Points& points) override {
+  void reassemble(const Points& points) override {
     assemble_face_blocks(result_.stiffness, incidence_, false, 1, [&](Index f, Index a, Index b) {
       const Index n = mesh_.faces().size(f);
       if (a == b) return 2.0;

@@ -196,15 +196,15 @@ struct Discretization {
 };
 
 /// The two phases of a discretization. The constructor of an implementation runs the symbolic one:
-/// sparsity from connectivity alone; update() runs the numeric one and can be repeated with moved
-/// vertices.
+/// sparsity from connectivity alone; reassemble() runs the numeric one and can be repeated with
+/// moved vertices.
 class Assembly {
  public:
   virtual ~Assembly() = default;
   /// \param points  (V, 3) positions  [length]
   /// \throws DegenerateElement  with DegeneratePolicy::Strict
   /// \throws InvalidOption      the coefficient is not a positive finite number somewhere
-  virtual void update(const Points& points) = 0;
+  virtual void reassemble(const Points& points) = 0;
   const Discretization& discretization() const { return result_; }
   /// Keeps with the result what it is made with.
   void set_options(DiscretizationOptions options) { result_.options = std::move(options); }

@@ -87,7 +87,7 @@ template <class Entry, class Mesh>
 Discretization both_phases(const Entry& entry, const Mesh& mesh,
                            const DiscretizationOptions& options) {
   const std::unique_ptr<Assembly> assembly = entry.prepare(mesh, options);
-  assembly->update(mesh.points());
+  assembly->reassemble(mesh.points());
   return assembly->release();
 }
 

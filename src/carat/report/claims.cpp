@@ -174,7 +174,7 @@ class Measurement {
                             DiscretizationParts parts = DiscretizationParts::Matrices) const {
     const auto assembly = entry_.prepare(
         mesh, {.mass = mass, .eps_rel = 1e-14, .parts = parts, .threads = options_.threads});
-    assembly->update(mesh.points());
+    assembly->reassemble(mesh.points());
     return assembly->release();
   }
   bool flat() const { return kVolume<Mesh> || contains(family_.name, "plane-"); }

@@ -248,7 +248,7 @@ void DdfvAssembly::assemble_stiffness() {
   });
 }
 
-void DdfvAssembly::update(const Points& points) {
+void DdfvAssembly::reassemble(const Points& points) {
   compute_points(points);
   compute_gradients();
   assemble_stiffness();

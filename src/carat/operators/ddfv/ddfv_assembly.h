@@ -13,7 +13,7 @@ namespace carat {
 /// diamond's gradient is made of.
 class DdfvAssembly : public Assembly {
  public:
-  void update(const Points& points) override;
+  void reassemble(const Points& points) override;
 
  protected:
   enum class Site { Vertex, Face, Cell, Edge };

@@ -33,7 +33,7 @@ class TriangleDiamondAssembly final : public Assembly {
     const EdgeTopology& edges = mesh.edges(threads);
     return {mesh.n_vertices(), mesh.faces(), edges.vertices, edges.corners, edges.of_corner};
   }
-  void update(const Points& points) override;
+  void reassemble(const Points& points) override;
 
  private:
   using Block = TriangleDiamondBlock;
@@ -220,7 +220,7 @@ void TriangleDiamondAssembly::report(const Points& points) {
       result_.diagnostics);
 }
 
-void TriangleDiamondAssembly::update(const Points& points) {
+void TriangleDiamondAssembly::reassemble(const Points& points) {
   compute_terms(points);
   assemble_triangle_diamonds(result_.stiffness, result_.mass, lumped_, incidence_, sources_,
                              options_.threads, terms_);

@@ -22,7 +22,7 @@ PolygonAssembly::PolygonAssembly(const char* name, const PolygonMesh& mesh,
   result_.sample_measure.resize(mesh_.n_faces());
 }
 
-void PolygonAssembly::update(const Points& points) {
+void PolygonAssembly::reassemble(const Points& points) {
   measure_faces(points);
   compute_terms();
   assemble_matrices();

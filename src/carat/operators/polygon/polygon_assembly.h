@@ -14,7 +14,7 @@ namespace carat {
 /// numbers a corner, in O(1).
 class PolygonAssembly : public Assembly {
  public:
-  void update(const Points& points) override;
+  void reassemble(const Points& points) override;
 
  protected:
   using Vec2 = Eigen::Vector2d;

@@ -35,7 +35,7 @@ class BungeAssembly final : public Assembly {
     if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
   }
 
-  void update(const Points& points) override {
+  void reassemble(const Points& points) override {
     update_virtual_vertices(mesh_, points, options_.virtual_vertex, options_.threads, virtuals_);
     face_points_ = face_points(mesh_, points, virtuals_.weights);
     compute_terms(points);

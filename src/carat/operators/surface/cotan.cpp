@@ -33,7 +33,7 @@ class CotanAssembly final : public Assembly {
     if (options_.parts != DiscretizationParts::Matrices) make_gradient_pattern();
   }
 
-  void update(const Points& points) override {
+  void reassemble(const Points& points) override {
     compute_terms(points);
     assemble_face_blocks(result_.stiffness, incidence_, false, options_.threads,
                          [&](Index f, Index a, Index b) {

@@ -33,7 +33,7 @@ template <class Term>
 class DiamondAssembly final : public Assembly {
  public:
   DiamondAssembly(const char* name, const PolygonMesh& mesh, const DiscretizationOptions& options);
-  void update(const Points& points) override;
+  void reassemble(const Points& points) override;
 
  private:
   static constexpr bool kGeneral = std::is_same_v<Term, GeneralDiamondTerm>;
@@ -412,7 +412,7 @@ void DiamondAssembly<Term>::report() {
 }
 
 template <class Term>
-void DiamondAssembly<Term>::update(const Points& points) {
+void DiamondAssembly<Term>::reassemble(const Points& points) {
   update_virtual_vertices(mesh_, points, options_.virtual_vertex, options_.threads, virtuals_);
   if (options_.coefficient || options_.parts == DiscretizationParts::Frames)
     face_points_ = face_points(mesh_, points, virtuals_.weights);

@@ -24,7 +24,7 @@ constexpr double kNoise = 1e-13;
 class VolumeBungeAssembly final : public Assembly {
  public:
   VolumeBungeAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options);
-  void update(const Points& points) override;
+  void reassemble(const Points& points) override;
 
  private:
   /// A virtual tetrahedron: the corner of its face and the next. On the side above a face, i and j
@@ -67,7 +67,7 @@ class VolumeBungeAssembly final : public Assembly {
   bool loose_faces_;  // some face has no cell
   bool tets_;         // all cells are tetrahedra, K constant in each: the closed form serves
   Array<LinearTet> linear_tets_;
-  bool closed_form_ = false;  // the last update took it
+  bool closed_form_ = false;  // the last reassembly took it
   Vec3 origin_ = Vec3::Zero();
   Points points_;  // relative to the origin, so that no accuracy is lost far from it
 };
@@ -360,7 +360,7 @@ void VolumeBungeAssembly::report() {
       result_.diagnostics);
 }
 
-void VolumeBungeAssembly::update(const Points& points) {
+void VolumeBungeAssembly::reassemble(const Points& points) {
   centre_points(points, points_, origin_);
   closed_form_ = tets_ && compute_tets();
   const bool with_gradient = options_.parts >= DiscretizationParts::Gradient;

@@ -28,7 +28,7 @@ class VolumeDiamondAssembly final : public Assembly {
  public:
   VolumeDiamondAssembly(const char* name, const PolyhedralMesh& mesh,
                         const DiscretizationOptions& options);
-  void update(const Points& points) override;
+  void reassemble(const Points& points) override;
 
  private:
   /// A face with its two tips; where a cell is missing its own virtual vertex stands in.
@@ -448,7 +448,7 @@ void VolumeDiamondAssembly::report() {
       result_.diagnostics);
 }
 
-void VolumeDiamondAssembly::update(const Points& points) {
+void VolumeDiamondAssembly::reassemble(const Points& points) {
   centre_points(points, points_, origin_);
   const TetHalves halves{1 - theta_, moment_exact_, options_.tau.value_or(0.0)};
   const bool all_sound =

@@ -19,7 +19,7 @@ namespace {
 class DualTetAssembly final : public Assembly {
  public:
   DualTetAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options);
-  void update(const Points& points) override;
+  void reassemble(const Points& points) override;
 
  private:
   struct Term {
@@ -97,7 +97,7 @@ DualTetAssembly::Term DualTetAssembly::term(Index c, double& volume) const {
   return result;
 }
 
-void DualTetAssembly::update(const Points& points) {
+void DualTetAssembly::reassemble(const Points& points) {
   centre_points(points, points_, origin_);
   terms_.resize(static_cast<std::size_t>(mesh_.n_cells()));
   Vector volumes(mesh_.n_cells());

@@ -19,7 +19,7 @@ namespace {
 class PrimalTetAssembly final : public Assembly {
  public:
   PrimalTetAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options);
-  void update(const Points& points) override;
+  void reassemble(const Points& points) override;
 
  private:
   void make_gradient_pattern();
@@ -148,7 +148,7 @@ void PrimalTetAssembly::report() {
       result_.diagnostics);
 }
 
-void PrimalTetAssembly::update(const Points& points) {
+void PrimalTetAssembly::reassemble(const Points& points) {
   centre_points(points, points_, origin_);
   compute_terms();
   assemble_linear_tets(result_.stiffness, with_mass_ ? &result_.mass : nullptr, lumped_, incidence_,

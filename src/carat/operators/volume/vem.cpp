@@ -27,7 +27,7 @@ using Vec4 = Eigen::Vector4d;
 class VolumeVemAssembly final : public Assembly {
  public:
   VolumeVemAssembly(const PolyhedralMesh& mesh, const DiscretizationOptions& options);
-  void update(const Points& points) override;
+  void reassemble(const Points& points) override;
 
  private:
   struct Corner {
@@ -245,7 +245,7 @@ void VolumeVemAssembly::report() {
       result_.diagnostics);
 }
 
-void VolumeVemAssembly::update(const Points& points) {
+void VolumeVemAssembly::reassemble(const Points& points) {
   centre_points(points, points_, origin_);
   update_virtual_vertices(mesh_.face_mesh(), points_, options_.virtual_vertex, options_.threads,
                           virtuals_);
