@@ -55,6 +55,42 @@ TEST(Componentwise, covers_the_range_of_double_precision_below_and_above_one) {
   EXPECT_GT(compared, 2000);
 }
 
+/// M + h^2 S and the heat of vertex 0 on a strip whose sides have the length h.
+struct Strip {
+  SparseMatrix a;
+  Matrix b;
+
+  explicit Strip(double h) {
+    const PolygonMesh unit = quad_grid(1500, 1);
+    const Discretization d = discretize(PolygonMesh(h * unit.points(), unit.faces()));
+    a = d.mass + h * h * d.stiffness;
+    b = Matrix::Zero(a.rows(), 1);
+    b(0, 0) = 1e250 * a.coeff(0, 0);
+  }
+};
+
+TEST(Componentwise, units_change_nothing) {
+  SolveReport report;
+  const Strip strip(1);
+  const Matrix x = solve_componentwise(strip.a, {}, strip.b, 1, report);
+  ASSERT_LT(x.cwiseAbs().minCoeff(), 1e-290);  // every bound matters
+  for (const int exponent : {-60, -20, 20, 60}) {
+    const Strip other(std::ldexp(1.0, exponent));
+    SolveReport own;
+    EXPECT_EQ((solve_componentwise(other.a, {}, other.b, 1, own) - x).cwiseAbs().maxCoeff(), 0)
+        << exponent;
+    EXPECT_EQ(own.iterations, report.iterations);
+  }
+  for (const double h : {1e-18, 1e-6, 1e6, 1e18}) {
+    const Strip other(h);
+    const Matrix y = solve_componentwise(other.a, {}, other.b, 1, report);
+    for (Index i = 0; i < x.size(); ++i) {
+      if (std::abs(x(i)) < 1e-280) continue;
+      EXPECT_NEAR(y(i) / x(i), 1, 1e-7) << h << " " << i;
+    }
+  }
+}
+
 TEST(Componentwise, columns_and_threads_change_no_bit) {
   const SparseMatrix a = diffusion(90, 60);
   Matrix b = Matrix::Zero(a.rows(), 13);

@@ -129,6 +129,17 @@ TEST(HeatGeodesics, directions_of_elements_keep_converging_on_concave_faces) {
   }
 }
 
+TEST(HeatGeodesics, distances_scale_with_the_mesh) {
+  const PolygonMesh mesh = generate_mesh("plane-voronoi", {.level = 2, .jitter = 0.2});
+  const auto distance = [&](double scale) {
+    const PolygonMesh scaled(scale * mesh.points(), mesh.faces());
+    return Vector(HeatGeodesics(scaled, discretize(scaled)).distance(0).values / scale);
+  };
+  const Vector expected = distance(1);
+  for (const double scale : {1e-9, 1e-6, 1e6, 1e9})
+    EXPECT_LT((distance(scale) - expected).cwiseAbs().maxCoeff(), 1e-8) << scale;
+}
+
 TEST(HeatGeodesics, mean_edge_length_shortens_the_time_step) {
   const PolygonMesh mesh = l_shaped_grid(3);
   const Discretization d = discretize(mesh);

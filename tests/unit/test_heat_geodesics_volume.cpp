@@ -63,6 +63,24 @@ TEST(HeatGeodesicsVolume, other_parts_and_loose_vertices_are_unreachable) {
   EXPECT_GT(distance.values[5], 0);
 }
 
+TEST(HeatGeodesicsVolume, distances_by_iteration_scale_with_the_mesh) {
+  for (const char* family : {"cube-hexahedra", "ball-tets-adaptive"}) {
+    const PolyhedralMesh mesh = generate_volume(family, {.level = 1, .jitter = 0.1});
+    const auto distance = [&](double scale) {
+      const PolyhedralMesh scaled(scale * mesh.points(), mesh.face_mesh().faces(), mesh.cells());
+      const HeatGeodesics geodesics(scaled, discretize(scaled),
+                                    {.solver = {.kind = SolverKind::Multigrid}});
+      EXPECT_EQ(geodesics.heat_info().kind, SolverKind::Auto);  // no factorisation
+      const GeodesicDistance result = geodesics.distance(0);
+      EXPECT_EQ(result.unresolved_samples, 0);
+      return Vector(result.values / scale);
+    };
+    const Vector expected = distance(1);
+    for (const double scale : {1e-9, 1e-6, 1e6, 1e9})
+      EXPECT_LT((distance(scale) - expected).cwiseAbs().maxCoeff(), 1e-8) << family << scale;
+  }
+}
+
 TEST(HeatGeodesicsVolume, iterations_give_what_factorisations_give) {
   for (const char* family : {"cube-hexahedra", "ball-tets-adaptive", "cube-voronoi"}) {
     SCOPED_TRACE(family);

@@ -22,15 +22,18 @@ constexpr Index kRowsOfSum = 4096;
 constexpr double kSmallEnergy = 1e-200;
 constexpr int kRescaling = 300;
 
-/// W right-hand sides, the values of a row side by side.
+/// W right-hand sides, the values of a row side by side. Matrix and right-hand sides are multiplied
+/// by a power of two that brings the smallest diagonal entry near 1: bounds then do not depend on
+/// units.
 template <int W>
 class Iteration {
  public:
   using Row = Eigen::Array<double, W, 1>;
   using Rows = std::vector<Row, Eigen::aligned_allocator<Row>>;
 
-  Iteration(const SparseMatrix& a, const Vector& inverse_diagonal, int threads)
-      : a_(a), inverse_(inverse_diagonal), threads_(threads) {}
+  /// \param inverse_diagonal  of unit * a
+  Iteration(const SparseMatrix& a, double unit, const Vector& inverse_diagonal, int threads)
+      : a_(a), unit_(unit), inverse_(inverse_diagonal), threads_(threads) {}
 
   Matrix solve(const Eigen::Ref<const Matrix>& b, SolveReport& report) {
     const std::size_t n = static_cast<std::size_t>(a_.rows());
@@ -40,13 +43,13 @@ class Iteration {
     p_.resize(n);
     Row scale;  // the residual is r_ times this
     for (int k = 0; k < W; ++k) {
-      const double largest = b.col(k).cwiseAbs().maxCoeff();
+      const double largest = unit_ * b.col(k).cwiseAbs().maxCoeff();
       if (!std::isfinite(b.col(k).sum()))
         throw SolverFailure("the right-hand side holds values that are not finite");
       scale[k] = largest > 0 ? std::ldexp(1.0, std::ilogb(largest)) : 1;
     }
     for (std::size_t i = 0; i < n; ++i)
-      r_[i] = b.row(static_cast<Index>(i)).transpose().array() / scale;
+      r_[i] = unit_ * b.row(static_cast<Index>(i)).transpose().array() / scale;
     Row energy = sum_rows([&](std::size_t i) {
       p_[i] = inverse_[static_cast<Index>(i)] * r_[i];
       return (r_[i] * p_[i]).eval();
@@ -126,17 +129,17 @@ class Iteration {
   Row product(std::size_t i, const Rows& x) const {
     Row sum = Row::Zero();
     for (SparseMatrix::InnerIterator entry(a_, static_cast<Index>(i)); entry; ++entry)
-      sum += entry.value() * x[static_cast<std::size_t>(entry.col())];
+      sum += unit_ * entry.value() * x[static_cast<std::size_t>(entry.col())];
     return sum;
   }
 
   /// The worst |b - A x|_i / (|A| |x| + |b|)_i; infinity where a value is not finite.
   Row errors(const Eigen::Ref<const Matrix>& b) {
     for_rows([&](std::size_t i) {
-      const Row right = b.row(static_cast<Index>(i)).transpose().array();
+      const Row right = unit_ * b.row(static_cast<Index>(i)).transpose().array();
       Row residual = right, size = right.abs();
       for (SparseMatrix::InnerIterator entry(a_, static_cast<Index>(i)); entry; ++entry) {
-        const Row term = entry.value() * x_[static_cast<std::size_t>(entry.col())];
+        const Row term = unit_ * entry.value() * x_[static_cast<std::size_t>(entry.col())];
         residual -= term;
         size += term.abs();
       }
@@ -151,6 +154,7 @@ class Iteration {
   }
 
   const SparseMatrix& a_;
+  double unit_;
   const Vector& inverse_;  // of the diagonal; 0 in fixed rows, which so stay 0
   int threads_;
   Rows x_, r_, p_, q_;
@@ -172,10 +176,13 @@ Matrix solve_componentwise(const SparseMatrix& a, const std::vector<bool>& fixed
                           {i});
     inverse[i] = 1 / inverse[i];
   }
+  const double largest = inverse.size() > 0 ? inverse.maxCoeff() : 0.0;
+  const double unit = largest > 0 ? std::ldexp(1.0, std::ilogb(largest)) : 1.0;
+  inverse /= unit;
   Matrix result(b.rows(), b.cols());
   const auto solve = [&]<int W>(Index first) {
     result.middleCols(first, W) =
-        Iteration<W>(a, inverse, threads).solve(b.middleCols(first, W), report);
+        Iteration<W>(a, unit, inverse, threads).solve(b.middleCols(first, W), report);
     return first + W;
   };
   Index k = 0;

@@ -9,7 +9,8 @@ namespace carat {
 
 /// Solves A x = b for symmetric positive definite A by conjugate gradients until every component
 /// is accurate, however small beside the largest: |b - A x|_i <= 1e-10 (|A| |x| + |b|)_i in every
-/// row [Oettli, Prager 1964], but for components below 1e-290.
+/// row [Oettli, Prager 1964], but for components below 1e-290. A unit that is another multiplies A
+/// and b and changes nothing.
 ///
 /// For well conditioned A whose solutions decay, like M + t S with t = h^2. A bound on the norm of
 /// the residual would say nothing of what is far from the source. A value advances by one entry an
