@@ -47,6 +47,21 @@ void assemble_cell_form(SparseMatrix& matrix, bool lumped, const VolumeIncidence
   parallel_blocks(n_vertices, threads, [&](int, Index begin, Index end) {
     Array<Index> position(static_cast<std::size_t>(n_vertices));
     for (Index row = begin; row < end; ++row) {
+      if (row + kFarRows < end)
+        for (const Index corner : vertex_corners.row(row + kFarRows)) {
+          prefetch(form.spoke.data() + 2 * corner);
+          prefetch(form.side.data() + 2 * corner);
+          prefetch(face_weights.data() + corner);
+          prefetch(mesh.faces.indices.data() + corner);
+          prefetch(corner_faces.data() + corner);
+        }
+      if (row + kNearRows < end)
+        for (const Index corner : vertex_corners.row(row + kNearRows)) {
+          const Index f = corner_faces[corner];
+          prefetch(form.face.data() + 2 * f);
+          prefetch(mesh.face_cells.data() + f);
+          prefetch(mesh.faces.offsets.data() + f);
+        }
       const RowWriter writer(matrix, row, position);
       if (mesh.vertex_cell_corners.size(row) == 0) continue;
       double diagonal = 0;

@@ -277,7 +277,7 @@ DiamondProducts diamond_products(std::shared_ptr<const ElementStructure> structu
         const bool is_above = cells.above == c;
         const double of_face = is_above ? face.above : face.below;
         for (Index corner = mesh.faces.begin(f); corner < mesh.faces.end(f); ++corner) {
-          const VolumeDiamondWorkspace::Corner& at = workspace.corners[corner];
+          const VolumeDiamondWorkspace::Tips& at = workspace.tips[corner];
           own[place[mesh.faces.indices[corner]]] +=
               (is_above ? at.above : at.below) + of_face * face_weights[corner];
         }

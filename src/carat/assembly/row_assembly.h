@@ -10,6 +10,17 @@
 
 namespace carat {
 
+/// Rows ahead of the one at hand whose faces are asked for: by corner, and by the face that is then
+/// known. Faces are not numbered like vertices, so what they hold is seldom in the cache.
+inline constexpr Index kFarRows = 4, kNearRows = 2;
+
+/// Starts to load what lies there, where the compiler can say so. No result depends on it.
+inline void prefetch([[maybe_unused]] const void* at) {
+#ifdef __GNUC__
+  __builtin_prefetch(at);
+#endif
+}
+
 /// Adds to one row of a matrix with a known pattern.
 class RowWriter {
  public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "carat/assembly/row_assembly.h"
 #include "carat/base/parallel.h"
 
 namespace carat {
@@ -29,7 +30,7 @@ void fill_cells(const VolumeIncidence& mesh, const CellRings& rings,
       const bool is_above = cells.above == c;
       const double of_face = is_above ? face.above : face.below;
       for (Index corner = mesh.faces.begin(f); corner < mesh.faces.end(f); ++corner)
-        own[*place++] += (is_above ? out.corners[corner].above : out.corners[corner].below) +
+        own[*place++] += (is_above ? out.tips[corner].above : out.tips[corner].below) +
                          of_face * face_weights[corner];
       gamma += is_above ? face.gamma_above : face.gamma_below;
       mass += is_above ? face.mass_above : face.mass_below;
@@ -69,6 +70,21 @@ void fill_rows(SparseMatrix& stiffness_matrix, SparseMatrix& mass_matrix, bool l
     double* const stiffness = sums.stiffness.data();
     double* const mass = sums.mass.data();
     double diagonal = 0, diagonal_mass = 0;
+    if (row + kFarRows < end)
+      for (const Index corner : vertex_corners.row(row + kFarRows)) {
+        prefetch(corners + corner);
+        prefetch(corners + std::max(corner - 2, 0));
+        prefetch(of_face + corner);
+        prefetch(face_vertices + corner);
+        prefetch(corner_faces.data() + corner);
+      }
+    if (row + kNearRows < end)
+      for (const Index corner : vertex_corners.row(row + kNearRows)) {
+        const Index f = corner_faces[corner];
+        prefetch(values.faces.data() + f);
+        prefetch(mesh.face_cells.data() + f);
+        prefetch(mesh.faces.offsets.data() + f);
+      }
     for (const Index cell_corner : mesh.vertex_cell_corners.row(row)) {
       const Index c = mesh.corner_cells[cell_corner];
       const Index first = mesh.cell_vertices.begin(c), n = mesh.cell_vertices.size(c);

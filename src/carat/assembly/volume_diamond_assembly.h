@@ -20,22 +20,27 @@ namespace carat {
 
 /// What the diamonds of a face add, and intermediate values, kept between calls for their memory.
 struct VolumeDiamondWorkspace {
-  /// One a corner of a face. A has the diagonal entries `diagonal`, -`side` between the corner's
+  /// A, one a corner of a face: the diagonal entries `diagonal`, -`side` between the corner's
   /// vertex and the next, and -`spoke` between the vertex and the virtual one.
   struct Corner {
     double side, spoke, diagonal;
-    double below, above;  ///< sigma a at the vertex, of either cell
-    double mass;          ///< of the vertex itself  [length^3]
+    double mass;  ///< of the vertex itself  [length^3]
+  };
+  /// sigma a at a corner's vertex, of either cell. Apart, as rows do not read it.
+  struct Tips {
+    double below, above;
   };
   /// A and a at the virtual vertex, and what belongs to the face as a whole.
   struct Face {
-    double spokes, below, above;
+    double spokes;
+    double mass;  ///< of the virtual vertex  [length^3]
+    double below, above;
     double gamma_below, gamma_above;  ///< gamma of either cell
     double gamma_across;              ///< gamma between them
-    double mass;                      ///< of the virtual vertex  [length^3]
     double mass_below, mass_above;    ///< of each cell's virtual vertex  [length^3]
   };
   Array<Corner> corners;
+  Array<Tips> tips;  ///< of the corners
   Array<Face> faces;
   Array<double> cell_mass;
   Array<double> own;                 ///< cell corner -> b_c
@@ -44,7 +49,8 @@ struct VolumeDiamondWorkspace {
 };
 
 /// Fills `stiffness` and `mass`, whose patterns are those of diamond_patterns(mesh, rings) (the
-/// mass may be diagonal: then with the row sums), from workspace.corners and workspace.faces.
+/// mass may be diagonal: then with the row sums), from corners, tips and faces of the
+/// workspace.
 /// \param vertex_corners  vertex -> corners of faces; \param corner_faces  corner -> face
 /// \param face_weights  corner -> affine weight; \param cell_weights  cell corner -> affine weight
 void assemble_volume_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, bool lumped_mass,

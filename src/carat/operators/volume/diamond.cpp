@@ -43,8 +43,7 @@ class VolumeDiamondAssembly final : public Assembly {
   // Numeric.
   void compute_faces();
   void add_split(const Diamond3d& diamond, const DiamondCrossing<3>& crossing, double gamma,
-                 VolumeDiamondWorkspace::Corner& a, VolumeDiamondWorkspace::Corner& b,
-                 VolumeDiamondWorkspace::Face& face) const;
+                 Index corner, Index next, VolumeDiamondWorkspace::Face& face);
   template <class Conductivity>
   void compute_face(Index f, const Conductivity& conductivity);
   void assemble_gradient();
@@ -145,9 +144,10 @@ struct DiamondConductivity {
 /// The jump between the halves of a diamond, and masses that its halves tell apart.
 /// \param gamma  |D| times the square of the gradient's derivative by u_above - u_below
 void VolumeDiamondAssembly::add_split(const Diamond3d& diamond, const DiamondCrossing<3>& crossing,
-                                      double gamma, VolumeDiamondWorkspace::Corner& a,
-                                      VolumeDiamondWorkspace::Corner& b,
-                                      VolumeDiamondWorkspace::Face& face) const {
+                                      double gamma, Index corner, Index next,
+                                      VolumeDiamondWorkspace::Face& face) {
+  VolumeDiamondWorkspace::Corner &a = workspace_.corners[corner], &b = workspace_.corners[next];
+  VolumeDiamondWorkspace::Tips &tips_a = workspace_.tips[corner], &tips_b = workspace_.tips[next];
   // Stiffness (left u_l + right u_r - sum of base u)^2; gamma brings K across the base.
   const auto& [at_a, at_b, at_f] = crossing.base;
   const double jump =
@@ -160,11 +160,11 @@ void VolumeDiamondAssembly::add_split(const Diamond3d& diamond, const DiamondCro
   a.diagonal += jump * at_a * at_a;
   b.diagonal += jump * at_b * at_b;
   face.spokes += jump * at_f * at_f;
-  a.below -= jump * crossing.left * at_a;
-  b.below -= jump * crossing.left * at_b;
+  tips_a.below -= jump * crossing.left * at_a;
+  tips_b.below -= jump * crossing.left * at_b;
   face.below -= jump * crossing.left * at_f;
-  a.above -= jump * crossing.right * at_a;
-  b.above -= jump * crossing.right * at_b;
+  tips_a.above -= jump * crossing.right * at_a;
+  tips_b.above -= jump * crossing.right * at_b;
   face.above -= jump * crossing.right * at_f;
   face.gamma_below += jump * crossing.left * crossing.left;
   face.gamma_above += jump * crossing.right * crossing.right;
@@ -186,7 +186,9 @@ void VolumeDiamondAssembly::compute_face(Index f, const Conductivity& conductivi
   const FaceCells cells = mesh_.face_cells()[f];
   VolumeDiamondWorkspace::Corner* const corners = workspace_.corners.data();
   VolumeDiamondWorkspace::Face face{};
+  VolumeDiamondWorkspace::Tips* const corner_tips = workspace_.tips.data();
   std::fill(corners + first, corners + last, VolumeDiamondWorkspace::Corner{});
+  std::fill(corner_tips + first, corner_tips + last, VolumeDiamondWorkspace::Tips{});
   if (cells.below >= 0 || cells.above >= 0) {
     const FaceTips tip = tips(f);
     const bool inner = cells.below >= 0 && cells.above >= 0;
@@ -206,6 +208,7 @@ void VolumeDiamondAssembly::compute_face(Index f, const Conductivity& conductivi
                    st = scale * diamond.s.dot(kt), sw = scale * diamond.s.dot(kw),
                    tw = scale * diamond.t.dot(kw);
       VolumeDiamondWorkspace::Corner &a = corners[corner], &b = corners[next];
+      VolumeDiamondWorkspace::Tips &tips_a = corner_tips[corner], &tips_b = corner_tips[next];
       const double side = ss + st, spoke_a = tt + st, spoke_b = -st;
       a.side = side;
       a.spoke += spoke_a;
@@ -213,10 +216,10 @@ void VolumeDiamondAssembly::compute_face(Index f, const Conductivity& conductivi
       a.diagonal += side + spoke_a;
       b.diagonal += side + spoke_b;
       const double gamma = scale * diamond.w.dot(kw);
-      a.above -= sw + tw;
-      a.below += sw + tw;
-      b.above += sw;
-      b.below -= sw;
+      tips_a.above -= sw + tw;
+      tips_a.below += sw + tw;
+      tips_b.above += sw;
+      tips_b.below -= sw;
       face.above += tw;
       face.below -= tw;
       face.spokes += tt;
@@ -235,14 +238,14 @@ void VolumeDiamondAssembly::compute_face(Index f, const Conductivity& conductivi
         add_split(diamond,
                   diamond_crossing(diamond, x1, x2, tip.face_point, tip.below, tip.above,
                                    options_.eps_rel),
-                  gamma, a, b, face);
+                  gamma, corner, next, face);
       }
     }
     if (!inner) {
       // u at the missing tip is that of the face point: fold its part into A and a.
       const bool no_above = cells.above < 0;
       for (Index corner = first; corner < last; ++corner)
-        corners[corner].spoke -= no_above ? corners[corner].above : corners[corner].below;
+        corners[corner].spoke -= no_above ? corner_tips[corner].above : corner_tips[corner].below;
       const double gamma = face.gamma_across;
       face.spokes += 2 * (no_above ? face.above : face.below) + gamma;
       (no_above ? face.below : face.above) -= gamma;
@@ -255,6 +258,7 @@ void VolumeDiamondAssembly::compute_face(Index f, const Conductivity& conductivi
 
 void VolumeDiamondAssembly::compute_faces() {
   workspace_.corners.resize(static_cast<std::size_t>(n_diamonds()));
+  workspace_.tips.resize(static_cast<std::size_t>(n_diamonds()));
   workspace_.faces.resize(static_cast<std::size_t>(mesh_.n_faces()));
   const bool plain = !options_.coefficient && options_.cell_coefficient.size() == 0;
   if (plain) {
