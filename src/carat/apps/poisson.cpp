@@ -44,11 +44,11 @@ double lowest_eigenvalue(const SpdSolver& solver, const std::vector<bool>& held)
   return std::isfinite(inverse) && inverse > 0 ? 1 / inverse : 0;
 }
 
-void append_zeros(BoundaryIntegrals& boundary, Index n) {
-  const Index before = static_cast<Index>(boundary.load.size());
-  boundary.load.conservativeResize(n);
-  boundary.load.tail(n - before).setZero();
-  boundary.robin.conservativeResize(n, n);
+/// The load of n unknowns: the vertices' own, and zeros.
+Vector padded(const Vector& load, Index n) {
+  Vector all = Vector::Zero(n);
+  all.head(load.size()) = load;
+  return all;
 }
 
 /// \param matrix  copied or moved, as it comes
@@ -101,6 +101,16 @@ Poisson::Operators Poisson::operators(Discretization&& d, int threads) {
           as_operator(d.mass_product, std::move(d.mass), threads)};
 }
 
+Poisson::Operators Poisson::operators(const std::shared_ptr<const Discretization>& d, int threads) {
+  const auto shared = [&](const std::shared_ptr<const ElementProduct>& product,
+                          const SparseMatrix& matrix) -> std::shared_ptr<const SymmetricOperator> {
+    if (product) return product;
+    return std::make_shared<MatrixOperator>(std::shared_ptr<const SparseMatrix>(d, &matrix),
+                                            threads);
+  };
+  return {shared(d->stiffness_product, d->stiffness), shared(d->mass_product, d->mass)};
+}
+
 Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
                  const BoundaryConditions& conditions, const SolverOptions& solver)
     : Poisson(integrate_boundary(mesh, conditions), discretization,
@@ -126,20 +136,58 @@ Poisson::Poisson(const PolyhedralMesh& mesh, Discretization&& discretization,
               operators(std::move(discretization), solver.threads), conditions,
               settled(solver, 3, sparser_stiffness(mesh, discretization))) {}
 
+Poisson::Poisson(const PolygonMesh& mesh,
+                 const std::shared_ptr<const Discretization>& discretization,
+                 const BoundaryConditions& conditions, const SolverOptions& solver)
+    : Poisson(integrate_boundary(mesh, conditions), *discretization,
+              operators(discretization, solver.threads), conditions,
+              settled(solver, 2, sparser_stiffness(mesh, *discretization))) {}
+
+Poisson::Poisson(const PolyhedralMesh& mesh,
+                 const std::shared_ptr<const Discretization>& discretization,
+                 const BoundaryConditions& conditions, const SolverOptions& solver)
+    : Poisson(integrate_boundary(mesh, conditions), *discretization,
+              operators(discretization, solver.threads), conditions,
+              settled(solver, 3, sparser_stiffness(mesh, *discretization))) {}
+
+Poisson Poisson::with_data(const PolygonMesh& mesh, const BoundaryConditions& conditions) const {
+  return with_data(integrate_boundary(mesh, conditions), conditions);
+}
+
+Poisson Poisson::with_data(const PolyhedralMesh& mesh, const BoundaryConditions& conditions) const {
+  return with_data(integrate_boundary(mesh, conditions), conditions);
+}
+
+Poisson Poisson::with_data(BoundaryIntegrals boundary, const BoundaryConditions& conditions) const {
+  Poisson other = *this;
+  const Index n = system_->rows();
+  if (boundary.load.size() != n - extra_.size())
+    throw InvalidOption("the problem has " + std::to_string(n - extra_.size()) +
+                        " vertices, the mesh " + std::to_string(boundary.load.size()));
+  other.boundary_load_ = padded(boundary.load, n);
+  other.fix_dirichlet_vertices(n - extra_.size(), conditions);
+  other.fix_boundary_unknowns(conditions);
+  if (other.fixed_ != fixed_ || conditions.robin_sides != robin_sides_ ||
+      conditions.robin_alpha != robin_alpha_)
+    throw InvalidOption(
+        "other Dirichlet vertices, Robin sides or alpha make another system; construct a new "
+        "Poisson for it");
+  return other;
+}
+
 Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretization,
                  Operators operators, const BoundaryConditions& conditions, SolverOptions solver)
     : system_(std::move(operators.stiffness)),
       mass_(std::move(operators.mass)),
-      boundary_load_(std::move(boundary.load)) {
-  const Index n = system_->rows(), n_vertices = n - discretization.extra.size();
-  if (n_vertices != boundary_load_.size())
+      extra_(discretization.extra),
+      robin_sides_(conditions.robin_sides),
+      robin_alpha_(conditions.robin_alpha) {
+  const Index n = system_->rows(), n_vertices = n - extra_.size();
+  if (n_vertices != boundary.load.size())
     throw InvalidOption("the discretization has " + std::to_string(n_vertices) +
-                        " vertices, the mesh " + std::to_string(boundary_load_.size()));
-  if (discretization.extra.size() > 0) {
-    boundary.load = boundary_load_;
-    append_zeros(boundary, n);
-    boundary_load_ = boundary.load;
-  }
+                        " vertices, the mesh " + std::to_string(boundary.load.size()));
+  boundary_load_ = padded(boundary.load, n);
+  boundary.robin.conservativeResize(n, n);
   component_ = system_->components();
   const Index n_components =
       component_.empty() ? 0 : *std::max_element(component_.begin(), component_.end()) + 1;
@@ -155,7 +203,7 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
         floating_[component_[v]] = false;
   }
   fix_dirichlet_vertices(n_vertices, conditions);
-  fix_boundary_unknowns(discretization.extra, conditions);
+  fix_boundary_unknowns(conditions);
 
   // A floating component is held at zero at its best determined vertex, and shifted afterwards.
   held_ = fixed_;
@@ -180,8 +228,8 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
                         "boundary, eliminate the unknowns of boundary faces, or use the operator "
                         "diamond");
   };
-  if (discretization.extra.size() == 0) {
-    solver_ = std::make_unique<SpdSolver>(system_, held_, solver);
+  if (extra_.size() == 0) {
+    solver_ = std::make_shared<SpdSolver>(system_, held_, solver);
     return;
   }
   if (solver.kind != SolverKind::Auto && solver.kind != SolverKind::Cholesky)
@@ -190,7 +238,7 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
                         discretization.name + " has others: use cholesky");
   solver.kind = SolverKind::Cholesky;
   try {
-    solver_ = std::make_unique<SpdSolver>(system_, held_, solver);
+    solver_ = std::make_shared<SpdSolver>(system_, held_, solver);
   } catch (const SolverFailure&) {
     refuse_singular();
   }
@@ -199,19 +247,18 @@ Poisson::Poisson(BoundaryIntegrals boundary, const Discretization& discretizatio
 }
 
 /// Unknowns on boundary faces and edges whose vertices all have Dirichlet data.
-void Poisson::fix_boundary_unknowns(const ExtraUnknowns& extra,
-                                    const BoundaryConditions& conditions) {
+void Poisson::fix_boundary_unknowns(const BoundaryConditions& conditions) {
   const std::vector<bool> of_vertices = fixed_;
-  const Index n_vertices = static_cast<Index>(component_.size()) - extra.size();
-  for (Index k = 0; k < extra.size(); ++k) {
-    const std::span<const Index> vertices = extra.boundary_vertices.row(k);
+  const Index n_vertices = static_cast<Index>(component_.size()) - extra_.size();
+  for (Index k = 0; k < extra_.size(); ++k) {
+    const std::span<const Index> vertices = extra_.boundary_vertices.row(k);
     const Index row = n_vertices + k;
     if (vertices.empty() || component_[row] < 0) continue;
     if (!std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return of_vertices[v]; }))
       continue;
     double value = 0;
     if (conditions.dirichlet_function) {
-      const Vec3 x = extra.positions.row(k).transpose();
+      const Vec3 x = extra_.positions.row(k).transpose();
       value = conditions.dirichlet_function(x);
       if (!std::isfinite(value))
         throw InvalidOption("the Dirichlet function is " + std::to_string(value) + " at (" +

@@ -59,6 +59,19 @@ class Poisson {
   Poisson(const PolyhedralMesh& mesh, Discretization&& discretization,
           const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
 
+  /// The same with the matrices shared, neither copied nor moved.
+  Poisson(const PolygonMesh& mesh, const std::shared_ptr<const Discretization>& discretization,
+          const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
+  Poisson(const PolyhedralMesh& mesh, const std::shared_ptr<const Discretization>& discretization,
+          const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
+
+  /// The same system with other data: Dirichlet values, fluxes, right-hand sides of Robin's
+  /// conditions. What solves it is shared, nothing is factorised anew.
+  /// \throws InvalidOption  as the constructor; other Dirichlet vertices, Robin sides or alpha,
+  ///                        which make another system
+  Poisson with_data(const PolygonMesh& mesh, const BoundaryConditions& conditions) const;
+  Poisson with_data(const PolyhedralMesh& mesh, const BoundaryConditions& conditions) const;
+
   /// \param f  one value an unknown, the vertices first; the load is mass * f
   /// \throws SolverFailure  a floating component's data do not balance: imbalance > 0.1
   PoissonSolution solve(const Vector& f) const;
@@ -74,24 +87,30 @@ class Poisson {
   };
   static Operators operators(const Discretization& discretization, int threads);
   static Operators operators(Discretization&& discretization, int threads);
+  static Operators operators(const std::shared_ptr<const Discretization>& discretization,
+                             int threads);
   Poisson(BoundaryIntegrals boundary, const Discretization& discretization, Operators operators,
           const BoundaryConditions& conditions, SolverOptions solver);
   bool any_floating() const {
     return std::find(floating_.begin(), floating_.end(), true) != floating_.end();
   }
   void fix_dirichlet_vertices(Index n_vertices, const BoundaryConditions& conditions);
-  void fix_boundary_unknowns(const ExtraUnknowns& extra, const BoundaryConditions& conditions);
+  void fix_boundary_unknowns(const BoundaryConditions& conditions);
+  Poisson with_data(BoundaryIntegrals boundary, const BoundaryConditions& conditions) const;
 
   std::shared_ptr<const SymmetricOperator> system_;  // stiffness plus Robin's matrix
   double system_norm_ = 0;                           // maximum norm over the rows solved for
   std::shared_ptr<const SymmetricOperator> mass_;
+  ExtraUnknowns extra_;
+  std::vector<Index> robin_sides_;  // the system depends on these
+  std::vector<double> robin_alpha_;
   Vector boundary_load_;     // Neumann and Robin
   std::vector<bool> fixed_;  // rows not solved for
   Vector fixed_values_;
   std::vector<Index> component_;
   std::vector<bool> floating_;  // component -> has no Dirichlet and no Robin data
   std::vector<bool> held_;      // fixed_, and one vertex of each floating component
-  std::unique_ptr<SpdSolver> solver_;
+  std::shared_ptr<const SpdSolver> solver_;
 };
 
 /// Deviation of u from a reference.

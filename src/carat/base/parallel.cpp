@@ -5,6 +5,8 @@
 #include <exception>
 #include <thread>
 
+#include "carat/base/interrupt.h"
+
 namespace carat {
 
 int resolve_threads(int requested) {
@@ -19,6 +21,7 @@ void parallel_blocks(Index n, int threads, const std::function<void(int, Index, 
   const auto bound = [&](int block) {
     return static_cast<Index>(static_cast<std::int64_t>(n) * block / blocks);
   };
+  throw_if_interrupted();
   if (blocks == 1) {
     body(0, 0, n);
     return;
@@ -43,8 +46,10 @@ void parallel_blocks(Index n, int threads, const std::function<void(int, Index, 
 void parallel_tasks(Index n, int threads, const std::function<void(Index task)>& body) {
   std::vector<std::exception_ptr> failures(static_cast<std::size_t>(n));
   std::atomic<Index> next{0};
-  const auto work = [&] {
+  const auto work = [&, stop = current_interrupt()] {
+    const Interruptible scope(stop);
     for (Index task = next++; task < n; task = next++) try {
+        throw_if_interrupted();
         body(task);
       } catch (...) {
         failures[static_cast<std::size_t>(task)] = std::current_exception();

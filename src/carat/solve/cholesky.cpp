@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "carat/base/error.h"
+#include "carat/base/interrupt.h"
 #include "carat/solve/reduction.h"
 
 #ifdef CARAT_WITH_CHOLMOD
@@ -109,6 +110,7 @@ struct Cholesky::Impl {
   }
 
   void factorise() {
+    throw_if_interrupted();
     const auto start = Clock::now();
     cholmod_sparse a = view();
     cholmod_factorize(&a, factor, &common);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "carat/base/error.h"
+#include "carat/base/interrupt.h"
 #include "carat/base/parallel.h"
 
 namespace carat {
@@ -58,6 +59,7 @@ class Iteration {
     Index iterations = 0;
     const auto done = [&] { return (worst <= kTolerance || energy == 0).all(); };
     for (; !done() && iterations < kIterations; ++iterations) {
+      throw_if_interrupted();
       const Row curvature = sum_rows([&](std::size_t i) {
         q_[i] = product(i, p_);
         return (p_[i] * q_[i]).eval();

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "carat/base/error.h"
+#include "carat/base/interrupt.h"
 #include "carat/base/parallel.h"
 
 namespace carat {
@@ -204,6 +205,7 @@ class Iterations {
     take_products(columns_.dots(r_, z_), nullptr);
     Vector factors(k_);
     while (true) {
+      throw_if_interrupted();
       multiply_(p_, q_);
       const Vector curvature = columns_.dots(p_, q_);
       for (Index j = 0; j < k_; ++j) {

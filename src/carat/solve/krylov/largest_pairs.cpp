@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "carat/base/error.h"
+#include "carat/base/interrupt.h"
 #include "carat/solve/krylov/products.h"
 
 namespace carat {
@@ -94,6 +95,7 @@ bool BlockLanczos::run_round() {
   const double last = before < wanted_ ? 0 : locked_values_[wanted_ - 1];
   Index next_look = std::max(2 * kBlock, wanted_ - locked_ + kBlock);
   for (int restarts = 0;;) {
+    throw_if_interrupted();
     expand();
     const bool full = locked_ + size_ + kBlock > capacity_;
     if (!full && size_ < next_look) continue;
