@@ -86,3 +86,8 @@ __all__ = [
     "stiffness",
     "write",
 ]
+
+# Where things are found, as help(), tracebacks and pickles should say.
+for _name in __all__:
+    if getattr(globals()[_name], "__module__", "").startswith("carat._"):
+        globals()[_name].__module__ = "carat"

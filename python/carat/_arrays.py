@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence, Sized
+from collections.abc import Iterable, Sequence
 from typing import Any, Union
 
 import numpy as np
@@ -79,16 +79,23 @@ def _is_row_array(values: Any) -> bool:
     return isinstance(values, np.ndarray) and values.ndim == 1 and values.dtype.kind in "iu"
 
 
+def offsets_of(lengths: npt.NDArray[Any]) -> npt.NDArray[np.int64]:
+    """Where rows of these lengths begin, and where the last one ends."""
+    offsets = np.zeros(len(lengths) + 1, dtype=np.int64)
+    np.cumsum(lengths, out=offsets[1:])
+    return offsets
+
+
 def _ragged(rows: Sequence[Any], what: str) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
     """(indices, offsets) of rows of any length."""
     lengths = np.empty(len(rows), dtype=np.int64)
     for i, row in enumerate(rows):
-        if not isinstance(row, Sized) or not isinstance(row, Iterable) or isinstance(row, str):
+        if isinstance(row, str) or not (hasattr(row, "__len__") and hasattr(row, "__iter__")):
             raise InvalidType(
                 f"{what}: entry {i} is {row!r}; expected a list of numbers", (i,)
             )
         lengths[i] = len(row)
-    offsets = np.concatenate(([0], np.cumsum(lengths)))
+    offsets = offsets_of(lengths)
     flat = list(itertools.chain.from_iterable(rows))
     if any(isinstance(entry, (list, tuple, np.ndarray)) for entry in flat):
         raise InvalidMesh(
@@ -136,8 +143,7 @@ def csr_rows(values: Any, what: str) -> tuple[npt.NDArray[Any], npt.NDArray[Any]
     kept = parts[0] != -1
     if np.any(kept[:, 1:] & ~kept[:, :-1]):
         raise InvalidMesh(f"{what}: -1 may only fill up the ends of rows")
-    offsets = np.concatenate(([0], np.cumsum(kept.sum(axis=1))))
-    return parts[0][kept].astype(np.int64), offsets.astype(np.int64)
+    return parts[0][kept].astype(np.int64), offsets_of(kept.sum(axis=1))
 
 
 def _same_type(*arrays: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], ...]:

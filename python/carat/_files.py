@@ -96,6 +96,7 @@ def write(
     """
     mesh = as_mesh(mesh)
     at = _path(path)
+    fields = _fields_of(mesh, vertex, face, cell)
     if vertex or face or cell:
         extension = os.path.splitext(at)[1].lower()
         for known in formats():
@@ -104,7 +105,7 @@ def write(
                     f"{at}: {known.title} files hold no fields; write .vtp, .vtu or .ply, or leave"
                     " the fields out"
                 )
-    _core.write(at, mesh._core, *_fields_of(mesh, vertex, face, cell), _patches_of(mesh))
+    _core.write(at, mesh._core, *fields, _patches_of(mesh))
 
 
 Named = list[tuple[str, Floats]]

@@ -94,9 +94,10 @@ class _MeshBase:
         """Same kind, points (bitwise) and connectivity; fields do not count."""
         if type(other) is not type(self) or not isinstance(other, _MeshBase):
             return NotImplemented
-        return self._core is other._core or all(
-            np.array_equal(a, b) for a, b in zip(self._arrays(), other._arrays())
-        )
+        if self._core is other._core:
+            return True
+        pairs = zip(self._arrays(), other._arrays())
+        return all(bool(np.array_equal(a, b)) for a, b in pairs)
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -543,12 +544,13 @@ def _restore_volume(
 def _is_table(cells: Any) -> bool:
     """Whether these are rows of vertices: an array, or a list of lists of numbers."""
     if isinstance(cells, np.ndarray):
-        return cells.dtype != object
+        return bool(cells.dtype != object)
     if not isinstance(cells, (list, tuple)):
         return hasattr(cells, "__array__")
     if not cells or not isinstance(cells[0], (list, tuple, np.ndarray)):
         return True
-    return len(cells[0]) > 0 and all(isinstance(v, (int, np.integer)) for v in cells[0])
+    first: list[Any] = list(cells[0])
+    return bool(first) and all(isinstance(v, (int, np.integer)) for v in first)
 
 
 def _cells_of_faces(cells: Iterable[Any]) -> tuple[npt.NDArray[Any], ...]:
@@ -592,7 +594,7 @@ def _insert_face_streams(
                 if here >= faces.size:
                     raise InvalidMesh(f"cell {c}: its stream of faces ends early", (c,))
                 here += 1 + max(0, int(faces[here]))
-            pieces.append(np.concatenate(([here - begin], faces[begin:here])))
+            pieces += [np.array([here - begin], dtype=np.int64), faces[begin:here]]
         at = end
     pieces.append(stream[at:])
     return np.concatenate(pieces).astype(np.int64)
@@ -657,7 +659,7 @@ def _split_stream(stream: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], npt.NDArr
     counts = stream[starts]
     kept = np.ones(stream.size, dtype=bool)
     kept[starts] = False
-    return stream[kept], np.concatenate(([0], np.cumsum(counts)))
+    return stream[kept], _arrays.offsets_of(counts)
 
 
 #: VTK's numbers of the cells that are faces.
@@ -682,12 +684,10 @@ def _from_unstructured_grid(grid: Any) -> Mesh:
     if unknown:
         raise InvalidMesh(f"cells of VTK's types {sorted(unknown)} are neither faces nor solids")
     indices, offsets = _split_stream(_arrays.integers(grid.cells, "cells").reshape(-1))
-    faces_of = [
-        # A pixel counts its vertices by rows.
-        [row[0], row[1], row[3], row[2]] if kind == 8 else row
-        for row, kind in zip(np.split(indices, offsets[1:-1]), types)
-    ]
-    return PolygonMesh(grid.points, [list(map(int, row)) for row in faces_of])
+    indices = indices.copy()
+    for start in offsets[:-1][types == 8]:  # a pixel counts its vertices by rows
+        indices[[start + 2, start + 3]] = indices[[start + 3, start + 2]]
+    return PolygonMesh(grid.points, (indices, offsets))
 
 
 #: meshio's names of solids, with VTK's numbers.

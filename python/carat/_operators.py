@@ -398,7 +398,7 @@ def discretize(
     True
     """
     mesh = as_mesh(mesh, faces)
-    options = {
+    options: dict[str, Any] = {
         "operator": operator,
         "virtual_point": virtual_point,
         "weights": weights,

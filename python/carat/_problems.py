@@ -466,7 +466,8 @@ class Poisson:
     def _vertices_of_patch(self, name: str) -> Ints:
         starts, indices = self.mesh.face_offsets, self.mesh.face_indices
         pieces = [indices[starts[f] : starts[f + 1]] for f in self._patch(name)]
-        return np.unique(np.concatenate([np.empty(0, dtype=np.int32), *pieces])).astype(np.int32)
+        vertices: Ints = np.unique(np.concatenate([np.empty(0, dtype=np.int32), *pieces]))
+        return vertices
 
     def _neumann(self, given: Any) -> tuple[Ints, Floats]:
         if given is None:

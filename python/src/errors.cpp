@@ -1,4 +1,4 @@
-#include <new>
+#include <string>
 
 #include "arrays.h"
 #include "carat/base/error.h"
@@ -8,11 +8,19 @@
 namespace carat::python {
 namespace {
 
+/// The library's message with the remedy in the words of Python.
+std::string in_python(std::string message) {
+  const std::string remedy = "use DegeneratePolicy::Report to leave them out";
+  if (const std::size_t at = message.find(remedy); at != std::string::npos)
+    message.replace(at, remedy.size(), "leave out strict=True");
+  return message;
+}
+
 /// Raises carat._errors.<name>(message, elements).
 void raise(const char* name, const Error& error) {
   try {
     const py::object type = py::module_::import("carat._errors").attr(name);
-    const py::object value = type(error.what(), py::cast(error.elements()));
+    const py::object value = type(in_python(error.what()), py::cast(error.elements()));
     PyErr_SetObject(type.ptr(), value.ptr());
   } catch (py::error_already_set& failure) {
     failure.restore();

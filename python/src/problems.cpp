@@ -194,7 +194,9 @@ void define_eigenmodes(py::module_& module) {
           EigenOptions solving = options;
           solving.sparser = sparser_stiffness(*mesh, d);
           solving.progress = [&](Index converged) { job.progress = converged; };
-          return std::make_shared<EigenPairs>(eigenmodes(d, count, fixed, solving));
+          auto found = std::make_shared<EigenPairs>(eigenmodes(d, count, fixed, solving));
+          job.progress = count;
+          return found;
         },
         progress);
     py::dict report;

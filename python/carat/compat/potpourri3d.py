@@ -82,10 +82,8 @@ def vertex_areas(V: Any, F: Any) -> Floats:
     if np.any(np.diff(mesh.face_offsets) != 3):
         raise InvalidOption("vertex_areas: of triangles only; see carat.discretize().lumped_mass")
     areas = np.linalg.norm(mesh.face_area_vectors, axis=1)
-    result: Floats = np.bincount(
-        mesh.face_indices, weights=np.repeat(areas, 3) / 3, minlength=mesh.n_vertices
-    )
-    return result
+    shares = np.repeat(areas, 3) / 3
+    return np.bincount(mesh.face_indices, weights=shares, minlength=mesh.n_vertices).astype(float)
 
 
 def edges(V: Any, F: Any) -> Ints:
