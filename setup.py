@@ -1,7 +1,12 @@
-"""Builds the extension module with CMake; everything else is in pyproject.toml."""
+"""Builds the extension module with CMake; everything else is in pyproject.toml.
+
+CARAT_BUILD_DIR names a build tree that has been configured with -DCARAT_BUILD_PYTHON=ON already, to
+build in instead of a new one.
+"""
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -21,7 +26,19 @@ def version():
 class CMakeBuild(build_ext):
     def build_extension(self, ext):
         target = Path(self.get_ext_fullpath(ext.name)).resolve().parent
-        build = Path(self.build_temp).resolve() / "cmake"
+        configured = os.environ.get("CARAT_BUILD_DIR")
+        build = Path(configured or Path(self.build_temp) / "cmake").resolve()
+        if not configured:
+            self.configure(build)
+        jobs = str(self.parallel or os.cpu_count() or 1)
+        subprocess.run(
+            ["cmake", "--build", build, "--target", "carat_python", "--parallel", jobs], check=True
+        )
+        target.mkdir(parents=True, exist_ok=True)
+        for module in (build / "python" / "carat").glob("_core*.so"):
+            self.copy_file(str(module), str(target / module.name))
+
+    def configure(self, build):
         build.mkdir(parents=True, exist_ok=True)
         options = [
             f"-DCMAKE_BUILD_TYPE={'Debug' if self.debug else 'Release'}",
@@ -29,21 +46,8 @@ class CMakeBuild(build_ext):
             "-DCARAT_BUILD_PYTHON=ON",
             "-DCARAT_BUILD_TESTS=OFF",
         ]
-        generator = ["-G", "Ninja"] if self._has("ninja") else []
+        generator = ["-G", "Ninja"] if shutil.which("ninja") else []
         subprocess.run(["cmake", ROOT, *generator, *options], cwd=build, check=True)
-        jobs = str(self.parallel or os.cpu_count() or 1)
-        subprocess.run(
-            ["cmake", "--build", ".", "--target", "carat_python", "--parallel", jobs],
-            cwd=build,
-            check=True,
-        )
-        target.mkdir(parents=True, exist_ok=True)
-        for module in (build / "python" / "carat").glob("_core*.so"):
-            self.copy_file(str(module), str(target / module.name))
-
-    @staticmethod
-    def _has(tool):
-        return subprocess.run(["which", tool], capture_output=True).returncode == 0
 
 
 setup(

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing of the packages in the named groups: build, test.
+# Installs what is missing of the packages in the named groups: build, python, test.
 # CARAT_SKIP_PACKAGES=1 leaves the system as it is, for machines that have everything by other means.
 set -euo pipefail
 
@@ -7,14 +7,17 @@ set -euo pipefail
 build=(libeigen3-dev libsuitesparse-dev libopenblas-dev libmetis-dev libvtk9-dev
        libmuparser-dev libcli11-dev nlohmann-json3-dev libcairo2-dev zlib1g-dev glmark2-data
        ca-certificates pkg-config:pkg-config cmake:cmake ninja:ninja-build g++:g++ node:nodejs npm:npm python3:python3)
-test=(libgtest-dev libbenchmark-dev libspectra-dev fonts-dejavu-core chromium:chromium clang-format-14:clang-format-14)
+python=(pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy)
+test=(python3-pytest mypy python3-pip python3-setuptools python3-wheel python3-meshio
+      libgtest-dev libbenchmark-dev libspectra-dev fonts-dejavu-core chromium:chromium clang-format-14:clang-format-14)
 
 wanted=()
 for group in "$@"; do
   case $group in
     build) wanted+=("${build[@]}") ;;
+    python) wanted+=("${python[@]}") ;;
     test) wanted+=("${test[@]}") ;;
-    *) echo "install_packages.sh: error: no group '$group'; there are build and test" >&2; exit 2 ;;
+    *) echo "install_packages.sh: error: no group '$group'; there are build, python and test" >&2; exit 2 ;;
   esac
 done
 [[ ${CARAT_SKIP_PACKAGES:-} == 1 ]] && exit 0

@@ -6,8 +6,10 @@ import os
 import pathlib
 import pickle
 import re
+import shutil
 import subprocess
 import sys
+import zipfile
 
 import pytest
 
@@ -103,6 +105,34 @@ def test_version_comes_from_one_place():
     assert f"project(carat VERSION {carat.__version__} " in cmake
     others = (ROOT / "pyproject.toml").read_text() + (ROOT / "setup.py").read_text()
     assert carat.__version__ not in others
+
+
+def test_wheel(tmp_path):
+    """What pip makes: everything inside, with the licences, and importable from anywhere."""
+    source = tmp_path / "source"
+    source.mkdir()
+    for name in ("setup.py", "pyproject.toml", "CMakeLists.txt", "README.md", "LICENSE",
+                 "THIRD_PARTY.md"):
+        shutil.copy(ROOT / name, source)
+    shutil.copytree(ROOT / "python" / "carat", source / "python" / "carat",
+                    ignore=shutil.ignore_patterns("__pycache__"))
+    package = pathlib.Path(carat.__file__).parent
+    environment = {**os.environ, "CARAT_BUILD_DIR": str(package.parents[1])}
+    environment.pop("PYTHONPATH")
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check"]
+    subprocess.run([*pip, "wheel", "--no-build-isolation", "--no-deps", "--no-index", "-w",
+                    tmp_path, source], env=environment, check=True, timeout=250)
+    wheel, = tmp_path.glob(f"carat-{carat.__version__}-*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        names = {name.rsplit("/", 1)[-1] for name in archive.namelist()}
+        archive.extractall(tmp_path / "site")
+    assert {"LICENSE", "THIRD_PARTY.md", "py.typed", "_core.pyi", "potpourri3d.py"} <= names
+    done = subprocess.run(
+        [sys.executable, "-c", "import carat; print(carat.__file__, carat.__version__)"],
+        env={**environment, "PYTHONPATH": str(tmp_path / "site")}, cwd=tmp_path,
+        capture_output=True, text=True, check=True,
+    )
+    assert done.stdout.split() == [str(tmp_path / "site/carat/__init__.py"), carat.__version__]
 
 
 def test_errors_have_one_base():
