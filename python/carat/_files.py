@@ -242,13 +242,12 @@ class View:
     def save(self, path: PathLike) -> Path:
         """Writes the page; it needs no network and no server."""
         target = Path(_path(path))
-        handle, temporary = tempfile.mkstemp(dir=target.parent, suffix=".html")
+        temporary = target.with_name(f"{target.name}.{os.getpid()}.part")
         try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(self.html)
+            temporary.write_text(self.html, encoding="utf-8")
             os.replace(temporary, target)
         except BaseException:
-            os.unlink(temporary)
+            temporary.unlink(missing_ok=True)
             raise
         return target
 
