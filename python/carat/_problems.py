@@ -519,7 +519,7 @@ class Eigenmodes:
 
     values: Floats  #: (k,) ascending [1/length^2]
     vectors: Floats  #: (n_vertices, k), M-orthonormal
-    residuals: Floats  #: (k,) |S u - lambda M u| / (lambda |M u|)
+    residuals: Floats  #: (k,) ``|S u - lambda M u| / (lambda |M u|)``
     zero_modes: int  #: how often lambda = 0 is an eigenvalue of the mesh
     solver: dict[str, Any] = field(repr=False)  #: what was chosen, and why
 

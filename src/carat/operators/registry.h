@@ -102,7 +102,9 @@ std::function<SparseMatrix()> sparser_stiffness(const PolyhedralMesh& mesh,
                                                 const Discretization& discretization);
 
 /// Both phases at once.
-/// \throws InvalidOption, DegenerateElement, InvalidMesh  (a simplex operator on other elements)
+/// \throws InvalidOption      an unknown operator, or an option that it has no use for
+/// \throws InvalidMesh        a simplex operator on other elements
+/// \throws DegenerateElement  with DegeneratePolicy::Strict
 Discretization discretize(const PolygonMesh& mesh, const std::string& operator_name = "diamond",
                           const DiscretizationOptions& options = {});
 Discretization discretize(const PolyhedralMesh& mesh, const std::string& operator_name = "diamond",
