@@ -37,6 +37,7 @@ def run(path):
 def main():
     # The kernels run in folders of their own.
     folders = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # a warning of no use here
     os.environ["PYTHONPATH"] = os.pathsep.join(os.path.abspath(f) for f in folders if f)
     paths = [Path(path) for path in sys.argv[1:]] or sorted(FOLDER.glob("*.ipynb"))
     failed = 0

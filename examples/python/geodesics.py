@@ -40,7 +40,8 @@ print(f"         mean error {abs(distance - exact).mean():.4f}")
 # %%
 nearest = heat.distance([0, int(distance.argmax())])
 each = heat.distance_many(range(100))
-print(f"         two poles: farthest {nearest.max():.4f} (pi / 2 = 1.5708); 100 sources: {each.shape}")
+print(f"         two poles: farthest {nearest.max():.4f} (pi / 2 = 1.5708)")
+print(f"         a hundred sources: {each.shape}")
 
 # %% [markdown]
 # Volumes take the same call. These cells are general polyhedra, and the distance goes straight

@@ -51,9 +51,10 @@ def write_case(folder: Path) -> None:
     kinds = {"points": "vectorField", "faces": "faceList", "boundary": "polyBoundaryMesh"}
     (folder / "constant/polyMesh").mkdir(parents=True)
     for name, entries in {**files, "boundary": patches}.items():
-        header = f"FoamFile {{ format ascii; class {kinds.get(name, 'labelList')}; object {name}; }}"
-        text = "\n".join(map(str, entries))
-        (folder / "constant/polyMesh" / name).write_text(f"{header}\n{len(entries)}\n(\n{text}\n)\n")
+        kind, text = kinds.get(name, "labelList"), "\n".join(map(str, entries))
+        header = f"FoamFile {{ format ascii; class {kind}; object {name}; }}"
+        path = folder / "constant/polyMesh" / name
+        path.write_text(f"{header}\n{len(entries)}\n(\n{text}\n)\n")
 
 
 # %% [markdown]
