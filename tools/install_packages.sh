@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing of the packages in the named groups: build, python, test.
+# Installs what is missing of the packages in the named groups: build, python, test, docs.
 # CARAT_SKIP_PACKAGES=1 leaves the system as it is, for machines that have everything by other means.
 set -euo pipefail
 
@@ -8,8 +8,11 @@ build=(libeigen3-dev libsuitesparse-dev libopenblas-dev libmetis-dev libvtk9-dev
        libmuparser-dev libcli11-dev nlohmann-json3-dev libcairo2-dev zlib1g-dev glmark2-data
        ca-certificates pkg-config:pkg-config cmake:cmake ninja:ninja-build g++:g++ node:nodejs npm:npm python3:python3)
 python=(pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy)
-test=(python3-pytest mypy python3-pip python3-setuptools python3-wheel python3-meshio
+test=(python3-pytest mypy python3-pip python3-setuptools python3-wheel python3-meshio python3-vtk9
+      python3-nbclient python3-nbformat python3-ipykernel
       libgtest-dev libbenchmark-dev libspectra-dev fonts-dejavu-core chromium:chromium clang-format-14:clang-format-14)
+docs=(python3-sphinx furo python3-myst-parser python3-sphinx-copybutton python3-breathe
+      python3-numpydoc python3-meshio python3-vtk9 doxygen:doxygen)
 
 wanted=()
 for group in "$@"; do
@@ -17,7 +20,8 @@ for group in "$@"; do
     build) wanted+=("${build[@]}") ;;
     python) wanted+=("${python[@]}") ;;
     test) wanted+=("${test[@]}") ;;
-    *) echo "install_packages.sh: error: no group '$group'; there are build, python and test" >&2; exit 2 ;;
+    docs) wanted+=("${docs[@]}") ;;
+    *) echo "install_packages.sh: error: no group '$group'; there are build, python, test and docs" >&2; exit 2 ;;
   esac
 done
 [[ ${CARAT_SKIP_PACKAGES:-} == 1 ]] && exit 0
