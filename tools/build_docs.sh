@@ -13,14 +13,12 @@ fi
 out=$(realpath -m -- "${1:-$(dirname "${BASH_SOURCE[0]}")/../build/docs}")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-./tools/install_packages.sh docs
+./tools/install_packages.sh build python docs
 python=${PYTHON:-/usr/bin/python3}
 if ! "$python" -c 'import carat' 2>/dev/null; then
   export PYTHONPATH=$PWD/build/release/python${PYTHONPATH:+:$PYTHONPATH}
   if ! "$python" -c 'import carat' 2>/dev/null; then
-    ./tools/install_packages.sh build
-    cmake --preset release -DCARAT_BUILD_PYTHON=ON -DPython_EXECUTABLE="$python"
-    cmake --build build/release --target carat_python --parallel "$(nproc)"
+    ./run --python
   fi
 fi
 
