@@ -212,6 +212,8 @@ class Assembly {
   Discretization release() { return std::move(result_); }
 
  protected:
+  /// Of another assembly that this one consists of.
+  static Discretization& result_of(Assembly& part) { return part.result_; }
   Discretization result_;
 };
 

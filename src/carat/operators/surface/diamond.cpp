@@ -79,6 +79,12 @@ class DiamondAssembly final : public Assembly {
                             options_.eps_rel);
   }
 
+  /// The matrices are the result's own between two calls of reassemble().
+  void exchange_matrices() {
+    result_.stiffness.swap(result_of(*triangles_).stiffness);
+    result_.mass.swap(result_of(*triangles_).mass);
+  }
+
   PolygonMesh mesh_;
   DiscretizationOptions options_;
   double theta_ = options_.theta.value_or(1.0);
@@ -86,6 +92,7 @@ class DiamondAssembly final : public Assembly {
   bool lumped_ = options_.mass == MassKind::Lumped;
   SurfaceIncidence incidence_;
   std::shared_ptr<const ElementStructure> structure_;  // only of products
+  std::unique_ptr<Assembly> triangles_;  // makes the matrices of triangles, as without a gradient
   FaceRings rings_;
   Array<Index> edge_diamonds_;  // empty: diamond e belongs to edge e
   Array<Term> terms_;
@@ -94,6 +101,13 @@ class DiamondAssembly final : public Assembly {
   Points face_points_;  // only where frames or a coefficient need them
 };
 
+/// The matrices do not depend on whether a gradient is asked for beside them, not in the last bit.
+std::unique_ptr<Assembly> closed_form(const char* name, const PolygonMesh& mesh,
+                                      DiscretizationOptions options) {
+  options.parts = DiscretizationParts::Matrices;
+  return make_triangle_diamond(name, mesh, options);
+}
+
 template <class Term>
 DiamondAssembly<Term>::DiamondAssembly(const char* name, const PolygonMesh& mesh,
                                        const DiscretizationOptions& options)
@@ -101,6 +115,8 @@ DiamondAssembly<Term>::DiamondAssembly(const char* name, const PolygonMesh& mesh
   result_.name = name;
   if (options_.form == OperatorForm::Products) {
     structure_ = diamond_structure(incidence_);
+  } else if ((triangles_ = closed_form(name, mesh_, options_))) {
+    exchange_matrices();
   } else {
     rings_ = face_rings(incidence_, options_.threads);
     DiamondPatterns patterns = diamond_patterns(incidence_, rings_, options_.threads);
@@ -419,7 +435,11 @@ void DiamondAssembly<Term>::reassemble(const Points& points) {
   order_nonmanifold_faces(points);
   compute_terms(points);
   // S = -L and M = P^T M^ P   [BBA21 (21), (22)]
-  if (structure_) {
+  if (triangles_) {
+    exchange_matrices();
+    triangles_->reassemble(points);
+    exchange_matrices();
+  } else if (structure_) {
     DiamondProducts products =
         diamond_products(structure_, lumped_, incidence_, terms_, edge_diamonds_, virtuals_.weights,
                          options_.threads);
