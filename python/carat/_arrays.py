@@ -25,8 +25,10 @@ def shape_of(array: npt.NDArray[Any]) -> str:
 def _array(values: Any, what: str) -> npt.NDArray[Any]:
     try:
         array = np.asarray(values)
-    except ValueError as error:  # ragged
-        raise InvalidOption(f"{what}: no array of numbers: {error}") from None
+    except ValueError:
+        raise InvalidOption(
+            f"{what}: no array of numbers: rows of different length, or nested unevenly"
+        ) from None
     if array.dtype == object:
         raise InvalidOption(
             f"{what}: no array of numbers, but of Python objects"

@@ -300,12 +300,14 @@ class PolyhedralMesh(_MeshBase):
         positions = _arrays.points(points)
         if _is_table(cells):
             table = _arrays.integers(cells, "cells")
-            if table.ndim != 2 or (table.shape[1] not in (4, 8) and table.size):
+            if table.size == 0:
+                table = table.reshape(0, 4)
+            if table.ndim != 2 or table.shape[1] not in (4, 8):
                 raise InvalidMesh(
                     f"cells: shape {_arrays.shape_of(table)}; expected (n, 4) tetrahedra, (n, 8)"
                     " hexahedra, or a list of cells, each a list of faces"
                 )
-            core = _core.polyhedral_mesh_of_rows(positions, table.reshape(-1, table.shape[1] or 4))
+            core = _core.polyhedral_mesh_of_rows(positions, table)
         else:
             core = _core.polyhedral_mesh(positions, *_cells_of_faces(cells))
         self._set(core, vertex_data, cell_data, patches)
@@ -555,6 +557,11 @@ def _is_table(cells: Any) -> bool:
 
 def _cells_of_faces(cells: Iterable[Any]) -> tuple[npt.NDArray[Any], ...]:
     """(face indices, face offsets, cell indices, cell offsets) of cells as lists of faces."""
+    if isinstance(cells, (str, bytes)) or not isinstance(cells, Iterable):
+        raise InvalidType(
+            f"cells: {type(cells).__name__}; expected (n, 4) tetrahedra, (n, 8) hexahedra, or a list"
+            " of cells, each a list of faces"
+        )
     faces: list[Any] = []
     offsets = [0]
     for c, cell in enumerate(cells):

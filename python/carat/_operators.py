@@ -70,11 +70,13 @@ def _number(value: Any, what: str) -> Optional[float]:
         raise InvalidType(f"{what}: {value!r}; expected a number") from None
 
 
-def _whole(value: Any, what: str, least: int) -> int:
+def _whole(value: Any, what: str, least: int, most: int = np.iinfo(np.int32).max) -> int:
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise InvalidType(f"{what}: {value!r}; expected a whole number")
-    if value < least or value > np.iinfo(np.int32).max:
+    if value < least:
         raise InvalidOption(f"{what}: {value}; expected a whole number of at least {least}")
+    if value > most:
+        raise InvalidOption(f"{what}: {value}; expected a whole number of at most {most}")
     return int(value)
 
 
@@ -123,7 +125,7 @@ def _arguments(
         "strict": bool(strict),
         "coefficient": function,
         "cell_coefficient": cells,
-        "threads": _whole(threads, "threads", 0),
+        "threads": _whole(threads, "threads", 0, 1024),
     }
 
 

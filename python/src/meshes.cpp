@@ -68,6 +68,18 @@ Csr csr_of(const In<T>& indices, const In<T>& offsets, const char* what) {
   return {to_indices(offsets, what), to_indices(indices, what)};
 }
 
+/// What derives connectivity takes a moment on large meshes; other threads go on meanwhile.
+template <class Mesh, Index (Mesh::*number)() const>
+Index unlocked(const Mesh& mesh) {
+  const py::gil_scoped_release released;
+  return (mesh.*number)();
+}
+template <class Make>
+decltype(auto) unlocked(Make make) {
+  const py::gil_scoped_release released;
+  return make();
+}
+
 /// (indices, offsets) over the mesh's own memory.
 template <class Mesh>
 py::tuple views(const std::shared_ptr<Mesh>& mesh, const Csr& rows) {
@@ -82,7 +94,7 @@ py::array_t<double> points_view(const std::shared_ptr<Mesh>& mesh) {
 }
 
 py::array_t<Index> edges_view(const Surface& mesh) {
-  const auto& edges = mesh->edges().vertices;
+  const auto& edges = unlocked([&]() -> const EdgeTopology& { return mesh->edges(); }).vertices;
   return view_of(mesh, edges.empty() ? nullptr : edges.front().data(),
                  {static_cast<py::ssize_t>(edges.size()), 2});
 }
@@ -321,22 +333,32 @@ void define_meshes(py::module_& module) {
   py::class_<PolygonMesh, Surface>(module, "PolygonMesh")
       .def_property_readonly("n_vertices", &PolygonMesh::n_vertices)
       .def_property_readonly("n_faces", &PolygonMesh::n_faces)
-      .def_property_readonly("n_edges", &PolygonMesh::n_edges)
+      .def_property_readonly("n_edges", &unlocked<PolygonMesh, &PolygonMesh::n_edges>)
       .def_property_readonly("n_dropped_corners", &PolygonMesh::n_dropped_corners)
       .def_property_readonly("points", &points_view<PolygonMesh>)
       .def_property_readonly("faces",
                              [](const Surface& mesh) { return views(mesh, mesh->faces()); })
       .def_property_readonly("edges", &edges_view)
       .def("boundary_vertices",
-           [](const PolygonMesh& mesh) { return moved_vector(on_boundary(mesh)); })
+           [](const PolygonMesh& mesh) {
+             return moved_vector(unlocked([&] { return on_boundary(mesh); }));
+           })
       .def("boundary_sides",
-           [](const PolygonMesh& mesh) { return moved_vector(boundary_edges(mesh)); })
+           [](const PolygonMesh& mesh) {
+             return moved_vector(unlocked([&] { return boundary_edges(mesh); }));
+           })
       .def("vertex_components",
-           [](const PolygonMesh& mesh) { return moved_vector(vertex_components(mesh)); })
+           [](const PolygonMesh& mesh) {
+             return moved_vector(unlocked([&] { return vertex_components(mesh); }));
+           })
       .def("vertex_normals",
-           [](const PolygonMesh& mesh) { return moved_points(vertex_normals(mesh)); })
+           [](const PolygonMesh& mesh) {
+             return moved_points(unlocked([&] { return vertex_normals(mesh); }));
+           })
       .def("face_area_vectors",
-           [](const PolygonMesh& mesh) { return moved_points(face_area_vectors(mesh)); })
+           [](const PolygonMesh& mesh) {
+             return moved_points(unlocked([&] { return face_area_vectors(mesh); }));
+           })
       .def("statistics", [](const PolygonMesh& mesh) { return statistics(mesh); })
       .def("with_points",
            [](const PolygonMesh& mesh, const In<double>& points) {
@@ -357,15 +379,18 @@ void define_meshes(py::module_& module) {
 
   py::class_<PolyhedralMesh, Volume>(module, "PolyhedralMesh")
       .def_property_readonly("n_vertices", &PolyhedralMesh::n_vertices)
-      .def_property_readonly("n_edges", &PolyhedralMesh::n_edges)
+      .def_property_readonly("n_edges", &unlocked<PolyhedralMesh, &PolyhedralMesh::n_edges>)
       .def_property_readonly("n_faces", &PolyhedralMesh::n_faces)
       .def_property_readonly("n_cells", &PolyhedralMesh::n_cells)
       .def_property_readonly("points", &points_view<PolyhedralMesh>)
       .def_property_readonly(
           "faces", [](const Volume& mesh) { return views(mesh, mesh->face_mesh().faces()); })
       .def_property_readonly("cells", [](const Volume& mesh) { return views(mesh, mesh->cells()); })
-      .def_property_readonly("cell_vertices",
-                             [](const Volume& mesh) { return views(mesh, mesh->cell_vertices()); })
+      .def_property_readonly(
+          "cell_vertices",
+          [](const Volume& mesh) {
+            return views(mesh, unlocked([&]() -> const Csr& { return mesh->cell_vertices(); }));
+          })
       .def_property_readonly("face_cells",
                              [](const Volume& mesh) {
                                const auto& cells = mesh->face_cells();
@@ -378,9 +403,13 @@ void define_meshes(py::module_& module) {
             return edges_view(Surface(mesh, const_cast<PolygonMesh*>(&mesh->face_mesh())));
           })
       .def("boundary_vertices",
-           [](const PolyhedralMesh& mesh) { return moved_vector(on_boundary(mesh)); })
+           [](const PolyhedralMesh& mesh) {
+             return moved_vector(unlocked([&] { return on_boundary(mesh); }));
+           })
       .def("boundary_sides",
-           [](const PolyhedralMesh& mesh) { return moved_vector(boundary_faces(mesh)); })
+           [](const PolyhedralMesh& mesh) {
+             return moved_vector(unlocked([&] { return boundary_faces(mesh); }));
+           })
       .def("statistics", [](const PolyhedralMesh& mesh) { return statistics(mesh); })
       .def("with_points",
            [](const PolyhedralMesh& mesh, const In<double>& points) {

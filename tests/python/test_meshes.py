@@ -72,6 +72,8 @@ def test_no_faces_and_no_points():
     empty = carat.PolygonMesh(np.zeros((0, 3)), [])
     assert (empty.n_vertices, empty.n_faces) == (0, 0)
     assert carat.stiffness(empty)[0].shape == (0, 0)
+    for cells in ([], np.zeros((0, 4), int), np.zeros((0, 8), int)):
+        assert carat.PolyhedralMesh(CUBE, cells).n_cells == 0
     lonely = carat.PolygonMesh(SQUARES, [])
     S, M = carat.stiffness(lonely)
     assert S.shape == (9, 9) and S.nnz == 0 and M.nnz == 0

@@ -119,6 +119,10 @@ CALLS = {
         lambda: carat.PolygonMesh(SQUARE, [0, 1, 2, 3]),
         carat.InvalidType, TypeError, ["entry 0", "list of numbers"],
     ),
+    "cells_none": (
+        lambda: carat.PolyhedralMesh(TET, None),
+        carat.InvalidType, TypeError, ["cells", "NoneType", "(n, 4)"],
+    ),
     "no_mesh": (
         lambda: carat.stiffness(NoMesh()),
         carat.InvalidType, TypeError, ["NoMesh", "no mesh"],
@@ -199,6 +203,10 @@ CALLS = {
     "threads_negative": (
         lambda: carat.stiffness(square(), threads=-2),
         carat.InvalidOption, ValueError, ["threads", "-2"],
+    ),
+    "threads_too_many": (
+        lambda: carat.stiffness(square(), threads=10**9),
+        carat.InvalidOption, ValueError, ["threads", str(10**9), "1024"],
     ),
     "theta_above_one": (
         lambda: carat.stiffness(square(), operator="stabilized_diamond", theta=1.5),

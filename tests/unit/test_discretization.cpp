@@ -34,6 +34,9 @@ TEST(Discretization, an_empty_mesh_gives_empty_matrices) {
     EXPECT_EQ(d.n_vertices(), 0);
     EXPECT_EQ(d.stiffness.nonZeros(), 0);
     EXPECT_EQ(d.divergence().rows(), 0);
+    const PolygonMesh no_faces(Points::Zero(3, 3), Csr());
+    for (const auto parts : {DiscretizationParts::Matrices, DiscretizationParts::Gradient})
+      EXPECT_EQ(discretize(no_faces, entry->name, {.parts = parts}).stiffness.nonZeros(), 0);
   }
 }
 

@@ -34,6 +34,7 @@ TEST(Parallel, the_exception_of_the_lowest_block_arrives) {
 
 TEST(Parallel, requested_threads_win) {
   EXPECT_EQ(resolve_threads(3), 3);
+  EXPECT_EQ(resolve_threads(1000000000), 1024);
   EXPECT_GE(resolve_threads(0), 1);
   EXPECT_GE(resolve_threads(-2), 1);
 }

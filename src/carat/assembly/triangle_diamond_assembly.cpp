@@ -293,7 +293,7 @@ void assemble_triangle_diamonds(SparseMatrix& stiffness, SparseMatrix& mass, boo
                                 const TriangleDiamondSources& sources, int threads,
                                 TriangleDiamondTerms& terms) {
   const Index n_edges = mesh.edge_corners.n_rows();
-  const bool halves = !terms.halves.empty();
+  const bool halves = terms.around.empty();  // also without a face, which has no halves
   parallel_blocks(n_edges, threads, [&](int, Index begin, Index end) {
     halves ? add_sides<true>(mesh, begin, end, terms) : add_sides<false>(mesh, begin, end, terms);
   });

@@ -9,8 +9,11 @@
 
 namespace carat {
 
+// A mistake beyond, which would take all memory for stacks.
+constexpr int kMostThreads = 1024;
+
 int resolve_threads(int requested) {
-  if (requested > 0) return requested;
+  if (requested > 0) return std::min(requested, kMostThreads);
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 

@@ -8,7 +8,8 @@
 
 namespace carat {
 
-/// Number of threads to use: `requested` if positive, else what the machine offers.
+/// Number of threads to use: `requested` if positive, but at most 1024; else what the machine
+/// offers.
 int resolve_threads(int requested);
 
 /// Calls body(block, begin, end) on `threads` contiguous blocks that cover [0, n).

@@ -55,8 +55,9 @@ void check_faces(const Csr& faces, Index n_vertices) {
     for (const Index v : faces.row(f))
       if (v < 0 || v >= n_vertices)
         throw InvalidMesh(describe_face(f, faces.row(f)) + ": vertex " + std::to_string(v) +
-                              " does not exist; the mesh has vertices 0 to " +
-                              std::to_string(n_vertices - 1),
+                              " does not exist; the mesh has " +
+                              (n_vertices > 0 ? "vertices 0 to " + std::to_string(n_vertices - 1)
+                                              : std::string("no vertices")),
                           {f});
     if (!has_three_distinct(faces.row(f)))
       throw InvalidMesh(
