@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "carat/apps/poisson.h"
 #include "carat/base/error.h"
@@ -133,6 +134,37 @@ TEST_F(PoissonTest, bad_data_are_refused) {
   const Poisson poisson(mesh, d, one);
   EXPECT_THROW(poisson.solve(Vector::Zero(3)), InvalidOption);
   EXPECT_THROW(poisson.solve_integrated(Vector::Constant(mesh.n_vertices(), nan)), InvalidOption);
+}
+
+TEST_F(PoissonTest, other_data_reuse_what_solves) {
+  const BoundaryEdges edges = boundary_edges(mesh, 6);
+  const auto conditions = [&](double value) {
+    BoundaryConditions result{.dirichlet_vertices = {0, 5}, .dirichlet_values = {value, -value}};
+    for (std::size_t k = 0; k < edges.edges.size(); ++k) {
+      (edges.sides[k] == 1 ? result.neumann_sides : result.robin_sides).push_back(edges.edges[k]);
+      if (edges.sides[k] == 1) {
+        result.neumann_flux.push_back(value);
+      } else {
+        result.robin_alpha.push_back(2);
+        result.robin_g.push_back(value + 1);
+      }
+    }
+    return result;
+  };
+  const auto shared = std::make_shared<const Discretization>(d);
+  const Poisson one(mesh, shared, conditions(1));
+  for (const double value : {1.0, -3.0}) {
+    const Poisson fresh(mesh, d, conditions(value));
+    const Vector u = one.with_data(mesh, conditions(value)).solve(x).values;
+    EXPECT_EQ((u - fresh.solve(x).values).cwiseAbs().maxCoeff(), 0);
+  }
+  BoundaryConditions other = conditions(1);
+  other.dirichlet_vertices[1] = 6;
+  EXPECT_THROW(one.with_data(mesh, other), InvalidOption);
+  other = conditions(1);
+  other.robin_alpha[0] = 3;
+  EXPECT_THROW(one.with_data(mesh, other), InvalidOption);
+  EXPECT_THROW(one.with_data(quad_grid(2, 2), {}), InvalidOption);
 }
 
 TEST_F(PoissonTest, error_norms_of_a_known_deviation) {
