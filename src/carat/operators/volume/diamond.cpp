@@ -4,6 +4,7 @@
 #include "carat/operators/volume/diamond.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "carat/assembly/diamond_product.h"
@@ -13,6 +14,7 @@
 #include "carat/base/parallel.h"
 #include "carat/kernels/diamond_3d.h"
 #include "carat/kernels/diamond_split.h"
+#include "carat/kernels/face_diamond_block.h"
 #include "carat/kernels/virtual_cell.h"
 #include "carat/operators/common.h"
 #include "carat/operators/linear_tets.h"
@@ -46,6 +48,10 @@ class VolumeDiamondAssembly final : public Assembly {
                  Index corner, Index next, VolumeDiamondWorkspace::Face& face);
   template <class Conductivity>
   void compute_face(Index f, const Conductivity& conductivity);
+  struct FaceBlock;
+  void compute_isotropic_face(Index f);
+  void compute_block(FaceBlock& block, Index valence);
+  void fold_missing_tip(Index f);
   void assemble_gradient();
   void collect_frames();
   void report();
@@ -241,35 +247,109 @@ void VolumeDiamondAssembly::compute_face(Index f, const Conductivity& conductivi
                   gamma, corner, next, face);
       }
     }
-    if (!inner) {
-      // u at the missing tip is that of the face point: fold its part into A and a.
-      const bool no_above = cells.above < 0;
-      for (Index corner = first; corner < last; ++corner)
-        corners[corner].spoke -= no_above ? corner_tips[corner].above : corner_tips[corner].below;
-      const double gamma = face.gamma_across;
-      face.spokes += 2 * (no_above ? face.above : face.below) + gamma;
-      (no_above ? face.below : face.above) -= gamma;
-    }
   } else {
     std::fill(result_.sample_measure.begin() + first, result_.sample_measure.begin() + last, 0.0);
   }
   workspace_.faces[f] = face;
+  fold_missing_tip(f);
+}
+
+/// At the boundary u at the missing tip is that of the face point: folds its part into A and a.
+void VolumeDiamondAssembly::fold_missing_tip(Index f) {
+  const FaceCells cells = mesh_.face_cells()[f];
+  if (!cells.boundary()) return;
+  const Csr& faces = mesh_.face_mesh().faces();
+  const bool no_above = cells.above < 0;
+  for (Index corner = faces.begin(f); corner < faces.end(f); ++corner) {
+    const VolumeDiamondWorkspace::Tips& tip = workspace_.tips[corner];
+    workspace_.corners[corner].spoke -= no_above ? tip.above : tip.below;
+  }
+  VolumeDiamondWorkspace::Face& face = workspace_.faces[f];
+  const double gamma = face.gamma_across;
+  face.spokes += 2 * (no_above ? face.above : face.below) + gamma;
+  (no_above ? face.below : face.above) -= gamma;
+}
+
+void VolumeDiamondAssembly::compute_isotropic_face(Index f) {
+  compute_face(f,
+               [](const Diamond3d& d, const Vec3&, const FaceTips&, Vec3& ks, Vec3& kt, Vec3& kw) {
+                 ks = d.s;
+                 kt = d.t;
+                 kw = d.w;
+               });
+}
+
+/// Faces of one valence that wait until a block is full.
+struct VolumeDiamondAssembly::FaceBlock {
+  std::array<Index, kBlockDiamondFaces> faces;
+  int size = 0;
+};
+
+/// Computes the waiting faces. A block that is not full repeats its last face, so that every face
+/// gets the same bits wherever it stands.
+void VolumeDiamondAssembly::compute_block(FaceBlock& block, Index valence) {
+  if (block.size == 0) return;
+  const Csr& faces = mesh_.face_mesh().faces();
+  std::array<FaceDiamondInput, kBlockDiamondFaces> input;
+  for (int l = 0; l < kBlockDiamondFaces; ++l) {
+    const Index f = block.faces[std::min(l, block.size - 1)];
+    const FaceCells cells = mesh_.face_cells()[f];
+    const double* const point = virtuals_.face_points.data() + 3 * std::ptrdiff_t{f};
+    const auto tip = [&](Index c) {
+      return c < 0 ? point : virtuals_.cell_points.data() + 3 * std::ptrdiff_t{c};
+    };
+    // Boundary diamonds have four vertices, not five.   [BBA21 (33)]
+    input[l] = {faces.indices.data() + faces.begin(f), point, tip(cells.below), tip(cells.above),
+                cells.boundary() ? 4.0 : 6.0};
+  }
+  FaceDiamonds sums;
+  const unsigned degenerate =
+      face_diamond_block(valence, points_.data(), input.data(), options_.eps_rel, sums);
+  for (int l = 0; l < block.size; ++l) {
+    const Index f = block.faces[l], first = faces.begin(f);
+    if ((degenerate >> l & 1U) != 0) {
+      compute_isotropic_face(f);
+      continue;
+    }
+    for (int i = 0; i < valence; ++i) {
+      workspace_.corners[first + i] = {sums.side[i][l], sums.spoke[i][l], sums.diagonal[i][l],
+                                       sums.mass[i][l]};
+      workspace_.tips[first + i] = {-sums.tip[i][l], sums.tip[i][l]};
+      result_.sample_measure[first + i] = sums.volume[i][l];
+    }
+    workspace_.faces[f] = {.spokes = sums.point_diagonal[l],
+                           .mass = sums.point_mass[l],
+                           .below = -sums.point_tip[l],
+                           .above = sums.point_tip[l],
+                           .gamma_below = sums.gamma[l],
+                           .gamma_above = sums.gamma[l],
+                           .gamma_across = sums.gamma[l],
+                           .mass_below = sums.tip_mass[l],
+                           .mass_above = sums.tip_mass[l]};
+    fold_missing_tip(f);
+  }
+  block.size = 0;
 }
 
 void VolumeDiamondAssembly::compute_faces() {
   workspace_.corners.resize(static_cast<std::size_t>(n_diamonds()));
   workspace_.tips.resize(static_cast<std::size_t>(n_diamonds()));
   workspace_.faces.resize(static_cast<std::size_t>(mesh_.n_faces()));
-  const bool plain = !options_.coefficient && options_.cell_coefficient.size() == 0;
-  if (plain) {
+  if (!options_.coefficient && options_.cell_coefficient.size() == 0) {
     parallel_blocks(mesh_.n_faces(), options_.threads, [&](int, Index begin, Index end) {
-      for (Index f = begin; f < end; ++f)
-        compute_face(
-            f, [](const Diamond3d& d, const Vec3&, const FaceTips&, Vec3& ks, Vec3& kt, Vec3& kw) {
-              ks = d.s;
-              kt = d.t;
-              kw = d.w;
-            });
+      std::array<FaceBlock, kMostDiamondCorners + 1> waiting;  // by valence
+      for (Index f = begin; f < end; ++f) {
+        const Index valence = mesh_.face_mesh().faces().size(f);
+        if (!plain() || !has_cells(f) || !has_face_diamond_block(valence)) {
+          compute_isotropic_face(f);
+          continue;
+        }
+        FaceBlock& block = waiting[static_cast<std::size_t>(valence)];
+        block.faces[block.size++] = f;
+        if (block.size == kBlockDiamondFaces) compute_block(block, valence);
+      }
+      for (Index valence = 0; valence <= kMostDiamondCorners; ++valence)
+        compute_block(waiting[static_cast<std::size_t>(valence)], valence);
     });
     return;
   }
