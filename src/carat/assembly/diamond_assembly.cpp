@@ -97,12 +97,7 @@ void fill_faces(const SurfaceIncidence& mesh, const FaceRings& rings,
       diamonds.for_side(edge, corner, [&](const Term& term) {
         add_side(term, corner, mesh.faces.indices[corner] == term.v1, a, b, face);
       });
-      for (const Index other : mesh.edge_corners.row(edge)) {
-        if (other == corner) continue;
-        double gamma = 0;
-        diamonds.for_side(edge, corner, [&](const Term& term) {
-          if (term.left == other || term.right == other) gamma += across_coupling(term);
-        });
+      const auto add_across = [&](Index other, double gamma) {
         // The side's two ends are vertices of f as well.
         const Index g = mesh.corner_faces[other];
         const Index other_end = other + 1 == mesh.faces.end(g) ? mesh.faces.begin(g) : other + 1;
@@ -110,6 +105,20 @@ void fill_faces(const SurfaceIncidence& mesh, const FaceRings& rings,
         (opposed ? b : a).ring -= gamma * weights[other];
         (opposed ? a : b).ring -= gamma * weights[other_end];
         for_vertices_across(mesh, other, [&](Index c) { *across++ = -gamma * weights[c]; });
+      };
+      if constexpr (kOneAnEdge) {
+        const Term& term = diamonds.terms[edge];
+        const Index other = term.left == corner ? term.right : term.left;
+        if (other >= 0) add_across(other, across_coupling(term));
+      } else {
+        for (const Index other : mesh.edge_corners.row(edge)) {
+          if (other == corner) continue;
+          double gamma = 0;
+          diamonds.for_side(edge, corner, [&](const Term& term) {
+            if (term.left == other || term.right == other) gamma += across_coupling(term);
+          });
+          add_across(other, gamma);
+        }
       }
     }
     for (Index corner = first; corner < last; ++corner)
