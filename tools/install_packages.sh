@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing of the packages in the named groups: build, python, test, docs.
+# Installs what is missing of the packages in the named groups: build, python, test, docs,
+# distributed.
 # CARAT_SKIP_PACKAGES=1 leaves the system as it is, for machines that have everything by other means.
 set -euo pipefail
 
@@ -11,6 +12,7 @@ python=(pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy)
 test=(python3-pytest mypy python3-pip python3-setuptools python3-wheel python3-meshio python3-vtk9
       python3-nbclient python3-nbformat python3-ipykernel
       libgtest-dev libbenchmark-dev libspectra-dev fonts-dejavu-core chromium:chromium clang-format-14:clang-format-14)
+distributed=(libscotch-dev petsc-dev slepc-dev libopenmpi-dev mpirun:openmpi-bin)
 docs=(python3-sphinx furo python3-myst-parser python3-sphinx-copybutton python3-breathe
       python3-numpydoc python3-meshio python3-vtk9 doxygen:doxygen)
 
@@ -20,8 +22,9 @@ for group in "$@"; do
     build) wanted+=("${build[@]}") ;;
     python) wanted+=("${python[@]}") ;;
     test) wanted+=("${test[@]}") ;;
+    distributed) wanted+=("${distributed[@]}") ;;
     docs) wanted+=("${docs[@]}") ;;
-    *) echo "install_packages.sh: error: no group '$group'; there are build, python, test and docs" >&2; exit 2 ;;
+    *) echo "install_packages.sh: error: no group '$group'; there are build, python, test, docs and distributed" >&2; exit 2 ;;
   esac
 done
 [[ ${CARAT_SKIP_PACKAGES:-} == 1 ]] && exit 0

@@ -429,6 +429,29 @@ PolyhedralMesh::PolyhedralMesh(Points points, Csr faces, Csr cells)
   *this = PolyhedralMesh(std::move(parts));
 }
 
+PolyhedralMesh PolyhedralMesh::from_face_cells(Points points, Csr faces, Csr cells,
+                                               Array<FaceCells> face_cells) {
+  PolyhedralMesh mesh;
+  mesh.face_mesh_ = PolygonMesh(std::move(points), std::move(faces));
+  check_cells(cells, mesh.n_faces());
+  const Array<FaceCells> named = incident_cells(cells, mesh.n_faces());
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    const bool known = static_cast<std::size_t>(f) < face_cells.size();
+    const FaceCells by_cells = named[f], given = known ? face_cells[f] : FaceCells{-1, -1};
+    const bool same = given.below == by_cells.below && given.above == by_cells.above;
+    const bool swapped = given.below == by_cells.above && given.above == by_cells.below;
+    if (!known || !(same || swapped))
+      throw InvalidMesh("face " + std::to_string(f) + ": its cells are given as " +
+                            std::to_string(given.below) + " and " + std::to_string(given.above) +
+                            ", but cells " + std::to_string(by_cells.below) + " and " +
+                            std::to_string(by_cells.above) + " name it (-1: none)",
+                        {f});
+  }
+  mesh.topology_->cells = std::move(cells);
+  mesh.topology_->face_cells = std::move(face_cells);
+  return mesh;
+}
+
 PolyhedralMesh PolyhedralMesh::from_owner_neighbour(Points points, Csr faces,
                                                     std::span<const Index> owner,
                                                     std::span<const Index> neighbour) {

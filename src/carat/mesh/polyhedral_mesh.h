@@ -48,6 +48,13 @@ class PolyhedralMesh {
   static PolyhedralMesh from_owner_neighbour(Points points, Csr faces, std::span<const Index> owner,
                                              std::span<const Index> neighbour);
 
+  /// From what another mesh knows already, as for a part of it: nothing is merged or turned.
+  /// \param cells       cell -> faces
+  /// \param face_cells  face -> the cells on its sides
+  /// \throws InvalidMesh  as the constructor; cells of a face that do not name it
+  static PolyhedralMesh from_face_cells(Points points, Csr faces, Csr cells,
+                                        Array<FaceCells> face_cells);
+
   using CellArray =
       Eigen::Ref<const Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
   /// From (n, 4) and (n, 8) arrays of vertices, hexahedra in the order of VTK.

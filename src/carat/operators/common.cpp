@@ -55,6 +55,13 @@ void check_cell_coefficient(const DiscretizationOptions& options, Index n_cells)
   }
 }
 
+void check_own_interfaces(const DiscretizationOptions& options, Index n_interfaces) {
+  const std::size_t n = options.own_interfaces.size();
+  if (n != 0 && n != static_cast<std::size_t>(n_interfaces))
+    throw InvalidOption("own_interfaces has " + std::to_string(n) + " flags for " +
+                        std::to_string(n_interfaces) + " edges or faces");
+}
+
 Eigen::Matrix3d cell_tensor(const DiscretizationOptions& options, Index cell) {
   const Matrix& k = options.cell_coefficient;
   if (k.size() == 0) return Eigen::Matrix3d::Identity();

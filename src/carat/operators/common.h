@@ -20,6 +20,9 @@ double coefficient_at(const DiscretizationOptions& options, const Vec3& centroid
 ///                        finite, or a cell's tensor is not positive definite
 void check_cell_coefficient(const DiscretizationOptions& options, Index n_cells);
 
+/// \throws InvalidOption  own_interfaces is neither empty nor one flag an interface
+void check_own_interfaces(const DiscretizationOptions& options, Index n_interfaces);
+
 /// K of a cell from the checked cell_coefficient; the identity where there is none.
 Eigen::Matrix3d cell_tensor(const DiscretizationOptions& options, Index cell);
 

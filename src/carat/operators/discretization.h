@@ -73,6 +73,10 @@ struct DiscretizationOptions {
   /// Volumes: K of every cell, a further factor. (n_cells, 1): scalars > 0; (n_cells, 6): symmetric
   /// positive definite tensors xx, yy, zz, xy, yz, xz. Empty: K = 1.
   Matrix cell_coefficient{};
+  /// Of a part of a mesh, see PartNumbers::own_interfaces: which edges of a surface, faces of a
+  /// volume bring their samples. Those of the others are left out without being degenerate, so that
+  /// the matrices of all parts add up. Empty: all.
+  std::vector<bool> own_interfaces{};
   DiscretizationParts parts = DiscretizationParts::Gradient;
   OperatorForm form = OperatorForm::Matrices;
   int threads = 0;  ///< 0: all the machine has. No result depends on it.

@@ -75,6 +75,9 @@ DiscretizationOptions settle_options(const std::string& name, const OperatorOpti
   if (!taken.products && options.form == OperatorForm::Products)
     throw InvalidOption("the operator " + name +
                         " is given by matrices only; ask for OperatorForm::Matrices");
+  if (!taken.own_interfaces && !options.own_interfaces.empty())
+    throw InvalidOption("the operator " + name +
+                        " has no samples at interfaces; leave out own_interfaces");
   if (!taken.tensor_coefficient && options.cell_coefficient.cols() == 6)
     throw InvalidOption("the operator " + name +
                         " takes scalars a cell as coefficient, not tensors");

@@ -43,6 +43,7 @@ struct OperatorOptionSet {
   std::optional<double> theta{};            ///< its default
   std::optional<double> tau{};              ///< of the moment-exact mass, its default
   bool products = false;                    ///< OperatorForm::Products
+  bool own_interfaces = false;              ///< its samples belong to interfaces
   bool tensor_coefficient = true;           ///< symmetric tensors in cell_coefficient
   bool stiffness_alone = false;             ///< DiscretizationParts::Stiffness saves something
 };

@@ -231,6 +231,7 @@ void TriangleDiamondAssembly::reassemble(const Points& points) {
 
 std::unique_ptr<Assembly> make_triangle_diamond(const char* name, const PolygonMesh& mesh,
                                                 const DiscretizationOptions& options) {
+  if (mesh.n_faces() == 0 || !options.own_interfaces.empty()) return nullptr;
   // No face has fewer than three corners.
   if (mesh.n_corners() != 3 * std::int64_t{mesh.n_faces()} ||
       !has_triangle_diamonds(TriangleDiamondAssembly::incidence(mesh, options.threads),

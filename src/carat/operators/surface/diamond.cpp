@@ -60,6 +60,9 @@ class DiamondAssembly final : public Assembly {
     const Term& term = terms_[diamond];
     return mesh_.edges().of_corner[term.left >= 0 ? term.left : term.right];
   }
+  bool is_left_out(Index diamond) const {
+    return !options_.own_interfaces.empty() && !options_.own_interfaces[edge_of(diamond)];
+  }
   /// Face edges of more than two faces: each face is in two diamonds, so each counts half.
   double share(Index edge) const { return mesh_.edges().corners.size(edge) > 2 ? 0.5 : 1.0; }
   VirtualTriangle triangle(Index corner, Index v1) const {
@@ -112,6 +115,7 @@ template <class Term>
 DiamondAssembly<Term>::DiamondAssembly(const char* name, const PolygonMesh& mesh,
                                        const DiscretizationOptions& options)
     : mesh_(mesh), options_(options), incidence_(surface_incidence(mesh_, options.threads)) {
+  check_own_interfaces(options_, mesh_.n_edges());
   result_.name = name;
   if (options_.form == OperatorForm::Products) {
     structure_ = diamond_structure(incidence_);
@@ -208,6 +212,7 @@ void DiamondAssembly<Term>::compute_terms(const Points& points) {
     // The caller's function is not asked to be thread-safe.
     coefficient.resize(terms_.size());
     for (Index d = 0; d < n_diamonds(); ++d) {
+      if (is_left_out(d)) continue;
       const Term& term = terms_[d];
       const Vec3 x1 = points.row(term.v1).transpose(), x2 = points.row(term.v2).transpose();
       Vec3 moment = Vec3::Zero();
@@ -225,6 +230,16 @@ void DiamondAssembly<Term>::compute_terms(const Points& points) {
   parallel_blocks(n_diamonds(), options_.threads, [&](int, Index begin, Index end) {
     for (Index d = begin; d < end; ++d) {
       Term& term = terms_[d];
+      if (is_left_out(d)) {
+        Term nothing{};
+        nothing.v1 = term.v1;
+        nothing.v2 = term.v2;
+        nothing.left = term.left;
+        nothing.right = term.right;
+        term = nothing;
+        result_.sample_measure[d] = 0;
+        continue;
+      }
       const Diamond2d value = diamond(term, points);
       const double part = edge_diamonds_.empty() ? 1.0 : share(edge_of(d));
       const double scale = options_.coefficient ? part * coefficient[d] : part;
@@ -345,7 +360,7 @@ void DiamondAssembly<Term>::assemble_gradient(const Points& points) {
       const Index first_row = n_rows_ * d;
       std::fill(values + outer[first_row], values + outer[first_row + n_rows_], 0.0);
       const Diamond2d value = diamond(term, points);
-      if (!(value.area > 0)) continue;
+      if (!(value.area > 0) || is_left_out(d)) continue;
       const double length = (points.row(term.v2) - points.row(term.v1)).norm();
       values[outer[first_row]] = -1 / length;
       values[outer[first_row] + 1] = 1 / length;
@@ -417,7 +432,7 @@ void DiamondAssembly<Term>::report() {
   report_virtual_vertices(virtuals_, result_.diagnostics);
   std::vector<Index> excluded;
   for (Index d = 0; d < n_diamonds(); ++d)
-    if (!(result_.sample_measure[d] > 0)) excluded.push_back(d);
+    if (!(result_.sample_measure[d] > 0) && !is_left_out(d)) excluded.push_back(d);
   report_degenerate(
       std::move(excluded), options_, "diamond",
       [&](Index d) {
@@ -474,7 +489,8 @@ extern const SurfaceOperator diamond_surface_operator = {
     {.masses = {MassKind::Full, MassKind::MomentExact, MassKind::Lumped},
      .virtual_vertex = true,
      .tau = 0.75,
-     .products = true},
+     .products = true,
+     .own_interfaces = true},
     {"S = G^T M_d G with one gradient per edge: linear on the diamond of the edge's two ends and "
      "the "
      "virtual vertices of its two faces, the two halves unfolded into one plane; virtual vertices "

@@ -14,7 +14,8 @@ extern const SurfaceOperator stabilized_diamond_surface_operator = {
      .virtual_vertex = true,
      .theta = 0.75,
      .tau = 0.75,
-     .products = true},
+     .products = true,
+     .own_interfaces = true},
     {"S = theta S_diamond + (1 - theta) S_bunge: the diamond's gradient, and a row a diamond for "
      "the "
      "jump of the derivative across the edge, which the diamond averages away. Same virtual "

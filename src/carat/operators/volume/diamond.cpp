@@ -65,8 +65,10 @@ class VolumeDiamondAssembly final : public Assembly {
     return {xf, tip(cells.below), tip(cells.above)};
   }
   Vec3 position(Index v) const { return points_.row(v).transpose(); }
-  bool has_cells(Index f) const {
-    return mesh_.face_cells()[f].below >= 0 || mesh_.face_cells()[f].above >= 0;
+  /// Has cells, and is not another part's.
+  bool has_diamonds(Index f) const {
+    return (mesh_.face_cells()[f].below >= 0 || mesh_.face_cells()[f].above >= 0) &&
+           (options_.own_interfaces.empty() || options_.own_interfaces[f]);
   }
   Index n_diamonds() const { return mesh_.face_mesh().n_corners(); }
 
@@ -96,10 +98,11 @@ VolumeDiamondAssembly::VolumeDiamondAssembly(const char* name, const PolyhedralM
                                              const DiscretizationOptions& options)
     : mesh_(mesh), options_(options), incidence_(volume_incidence(mesh_)) {
   check_cell_coefficient(options_, mesh_.n_cells());
+  check_own_interfaces(options_, mesh_.n_faces());
   result_.name = name;
   const bool products = options_.form == OperatorForm::Products;
   tets_ = !products && !options_.coefficient && options_.cell_coefficient.size() == 0 &&
-          mesh_.n_cells() > 0 && all_tetrahedra(incidence_);
+          options_.own_interfaces.empty() && mesh_.n_cells() > 0 && all_tetrahedra(incidence_);
   VolumeDiamondPatterns patterns;
   if (tets_) {
     tet_topology_ = tet_topology(incidence_, options_.threads);
@@ -195,7 +198,7 @@ void VolumeDiamondAssembly::compute_face(Index f, const Conductivity& conductivi
   VolumeDiamondWorkspace::Tips* const corner_tips = workspace_.tips.data();
   std::fill(corners + first, corners + last, VolumeDiamondWorkspace::Corner{});
   std::fill(corner_tips + first, corner_tips + last, VolumeDiamondWorkspace::Tips{});
-  if (cells.below >= 0 || cells.above >= 0) {
+  if (has_diamonds(f)) {
     const FaceTips tip = tips(f);
     const bool inner = cells.below >= 0 && cells.above >= 0;
     for (Index corner = first; corner < last; ++corner) {
@@ -375,6 +378,7 @@ void VolumeDiamondAssembly::compute_faces() {
 
 void VolumeDiamondAssembly::collect_columns(Index f, Array<Index>& columns) const {
   columns.clear();
+  if (!has_diamonds(f)) return;
   const FaceCells cells = mesh_.face_cells()[f];
   for (const Index c : {cells.below, cells.above}) {
     if (c < 0) continue;
@@ -430,7 +434,7 @@ void VolumeDiamondAssembly::assemble_gradient() {
     Vector of_face, of_below, of_above;
     Array<Index> place;
     for (Index f = begin; f < end; ++f) {
-      if (!has_cells(f)) continue;
+      if (!has_diamonds(f)) continue;
       const Index first = faces.begin(f), last = faces.end(f);
       const Index* const columns = inner + outer[n_rows_ * first];
       const Index n = outer[n_rows_ * first + 1] - outer[n_rows_ * first];
@@ -516,7 +520,7 @@ void VolumeDiamondAssembly::report() {
   std::vector<Index> excluded;
   for (Index f = 0; f < mesh_.n_faces(); ++f)
     for (Index corner = faces.begin(f); corner < faces.end(f); ++corner)
-      if (has_cells(f) && !(result_.sample_measure[corner] > 0)) excluded.push_back(corner);
+      if (has_diamonds(f) && !(result_.sample_measure[corner] > 0)) excluded.push_back(corner);
   report_degenerate(
       std::move(excluded), options_, "diamond",
       [&](Index corner) {
@@ -586,7 +590,8 @@ extern const VolumeOperator diamond_volume_operator = {
     {.masses = {MassKind::Full, MassKind::MomentExact, MassKind::Lumped},
      .virtual_vertex = true,
      .tau = 1.0,
-     .products = true},
+     .products = true,
+     .own_interfaces = true},
     {"S = G^T M_d G with one gradient for every edge of every face: linear on the edge, the face's "
      "virtual vertex and those of the two cells, which are affine combinations of their vertices. "
      "Mass "

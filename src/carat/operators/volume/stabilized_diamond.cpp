@@ -14,7 +14,8 @@ extern const VolumeOperator stabilized_diamond_volume_operator = {
      .virtual_vertex = true,
      .theta = 2.0 / 3,
      .tau = 1.0,
-     .products = true},
+     .products = true,
+     .own_interfaces = true},
     {"S = theta S_diamond + (1 - theta) S_bunge: the diamond's gradient, and a row a diamond for "
      "the "
      "jump of the derivative across the face, which the diamond averages away. Same virtual "

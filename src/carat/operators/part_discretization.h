@@ -1,0 +1,32 @@
+#pragma once
+// What a part of a mesh brings to the operators of the whole mesh.
+
+#include <string>
+
+#include "carat/mesh/mesh_part.h"
+#include "carat/operators/discretization.h"
+
+namespace carat {
+
+/// Operators over the vertices of `part.mesh` whose sum over all parts is that of the whole mesh;
+/// gradient samples are the part's own. Nothing is exchanged with other parts.
+/// \param options  cell_coefficient: of the cells of part.mesh
+/// \throws InvalidOption      as discretize(); an operator with unknowns beyond the vertices
+/// \throws InvalidMesh        as discretize()
+/// \throws DegenerateElement  as discretize(), numbered as in the part
+Discretization discretize_part(const MeshPart<PolygonMesh>& part, const std::string& operator_name,
+                               const DiscretizationOptions& options = {});
+Discretization discretize_part(const MeshPart<PolyhedralMesh>& part,
+                               const std::string& operator_name,
+                               const DiscretizationOptions& options = {});
+
+/// The part's share of sparser_stiffness(). Empty (0 x 0): there is nothing sparser. Where the part
+/// holds triangles alone and the mesh others too, a coefficient is sampled at slightly other
+/// points.
+/// \param discretization  of discretize_part(); its name and options are read
+SparseMatrix sparser_part_stiffness(const MeshPart<PolygonMesh>& part,
+                                    const Discretization& discretization);
+SparseMatrix sparser_part_stiffness(const MeshPart<PolyhedralMesh>& part,
+                                    const Discretization& discretization);
+
+}  // namespace carat
