@@ -1,6 +1,7 @@
-# What is for several processes: carat::partition where Scotch is found. Without it everything else
-# is built.
+# What is for several processes: carat::partition where Scotch is found, and with PETSc, SLEPc and
+# MPI also carat::distributed. Without them everything else is built.
 set(CARAT_HAS_PARTITION OFF)
+set(CARAT_HAS_DISTRIBUTED OFF)
 if(NOT CARAT_WITH_DISTRIBUTED)
   return()
 endif()
@@ -15,4 +16,25 @@ if(Scotch_FOUND)
   carat_warnings(carat_partition)
 else()
   message(STATUS "Scotch not found: no carat::partition (Debian: libscotch-dev)")
+endif()
+
+set(MPI_CXX_SKIP_MPICXX ON)
+find_package(MPI QUIET COMPONENTS CXX)
+find_package(PkgConfig QUIET)
+if(MPI_FOUND AND PkgConfig_FOUND)
+  pkg_check_modules(PETSC QUIET IMPORTED_TARGET petsc>=3.18 slepc>=3.18)
+endif()
+if(PETSC_FOUND)
+  set(CARAT_HAS_DISTRIBUTED ON)
+  # The flags of Debian's own build are not for ours.
+  set_property(TARGET PkgConfig::PETSC PROPERTY INTERFACE_COMPILE_OPTIONS)
+  file(GLOB distributed_sources CONFIGURE_DEPENDS src/carat/distributed/*.cpp)
+  list(FILTER distributed_sources EXCLUDE REGEX "/partition.cpp$")
+  add_library(carat_distributed STATIC ${distributed_sources})
+  add_library(carat::distributed ALIAS carat_distributed)
+  target_link_libraries(carat_distributed PUBLIC carat_core PRIVATE PkgConfig::PETSC MPI::MPI_CXX)
+  carat_warnings(carat_distributed)
+else()
+  message(STATUS "PETSc, SLEPc or MPI not found: no carat::distributed (Debian: petsc-dev, "
+                 "slepc-dev, libopenmpi-dev)")
 endif()

@@ -1,0 +1,27 @@
+#pragma once
+// Eigenfunctions of the Laplacian over all processes.
+
+#include <vector>
+
+#include "carat/apps/eigenmodes.h"
+#include "carat/mesh/mesh_part.h"
+#include "carat/operators/part_discretization.h"
+
+namespace carat {
+
+/// Collective. The `count` smallest eigenvalues of S x = lambda M x on a mesh of which every
+/// process holds a part, as eigenmodes() on one that is whole: SLEPc's Krylov-Schur method about a
+/// negative shift, with conjugate gradients and multigrid. Options of SLEPc (-eps_..., -st_ksp_...)
+/// choose others.
+/// \param discretization      of discretize_part()
+/// \param dirichlet_vertices  numbered as in the part; those of others are ignored
+/// \return vectors at the part's vertices
+/// \throws InvalidOption, SolverFailure  as eigenmodes(), Shared
+EigenPairs distributed_eigenmodes(const MeshPart<PolygonMesh>& part,
+                                  const Discretization& discretization, Index count,
+                                  const std::vector<Index>& dirichlet_vertices = {});
+EigenPairs distributed_eigenmodes(const MeshPart<PolyhedralMesh>& part,
+                                  const Discretization& discretization, Index count,
+                                  const std::vector<Index>& dirichlet_vertices = {});
+
+}  // namespace carat

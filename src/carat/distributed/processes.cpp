@@ -1,0 +1,134 @@
+#include "carat/distributed/processes.h"
+
+#include <slepcsys.h>
+
+#include <algorithm>
+#include <climits>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "carat/distributed/petsc.h"
+
+namespace carat {
+namespace {
+
+enum ErrorKind { kNone, kMesh, kDegenerate, kOption, kFile, kSolver, kMemory, kOther };
+
+ErrorKind kind_of(const std::exception& error) {
+  if (dynamic_cast<const InvalidMesh*>(&error)) return kMesh;
+  if (dynamic_cast<const DegenerateElement*>(&error)) return kDegenerate;
+  if (dynamic_cast<const InvalidOption*>(&error)) return kOption;
+  if (dynamic_cast<const IoError*>(&error)) return kFile;
+  if (dynamic_cast<const SolverFailure*>(&error)) return kSolver;
+  return dynamic_cast<const std::bad_alloc*>(&error) ? kMemory : kOther;
+}
+
+[[noreturn]] void throw_shared(int kind, const std::string& message) {
+  switch (kind) {
+    case kMesh:
+      throw Shared<InvalidMesh>(message);
+    case kDegenerate:
+      throw Shared<DegenerateElement>(message);
+    case kOption:
+      throw Shared<InvalidOption>(message);
+    case kFile:
+      throw Shared<IoError>(message);
+    case kSolver:
+      throw Shared<SolverFailure>(message);
+    default:
+      throw Shared<Error>(message);
+  }
+}
+
+void check_mpi(int error) {
+  if (error != MPI_SUCCESS) throw SolverFailure("MPI failed: error " + std::to_string(error));
+}
+
+template <class Value>
+Value reduce(Value value, MPI_Datatype type, MPI_Op operation) {
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, &value, 1, type, operation, PETSC_COMM_WORLD));
+  return value;
+}
+
+}  // namespace
+
+void check(PetscErrorCode error) {
+  if (error == 0) return;
+  const char* general = nullptr;
+  char* specific = nullptr;
+  PetscErrorMessage(error, &general, &specific);
+  std::string message = "PETSc: ";
+  message += general ? general : "error " + std::to_string(error);
+  if (specific && *specific) message.append(": ").append(specific);
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  throw SolverFailure(message);
+}
+
+Processes::Processes(std::vector<std::string> arguments) : arguments_(std::move(arguments)) {
+  for (std::string& argument : arguments_) pointers_.push_back(argument.data());
+  pointers_.push_back(nullptr);
+  int count = static_cast<int>(arguments_.size());
+  char** values = pointers_.data();
+  check(SlepcInitialize(&count, &values, nullptr, nullptr));
+  // Errors come back as codes, without a trace on the terminal.
+  check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+  check(PetscPopSignalHandler());
+  check_mpi(MPI_Comm_rank(PETSC_COMM_WORLD, &rank_));
+  check_mpi(MPI_Comm_size(PETSC_COMM_WORLD, &size_));
+}
+
+Processes::~Processes() { SlepcFinalize(); }
+
+void together(const std::function<void()>& work) {
+  int rank = 0, size = 1;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  int kind = kNone;
+  std::string message;
+  try {
+    work();
+  } catch (const std::exception& error) {
+    kind = kind_of(error);
+    message = kind == kMemory ? "out of memory; use more processes or machines" : error.what();
+  }
+  const int first = reduce(kind == kNone ? INT_MAX : rank, MPI_INT, MPI_MIN);
+  if (first == INT_MAX) return;
+  if (size > 1) message = "process " + std::to_string(rank) + ": " + message;
+  int length = static_cast<int>(message.size());
+  check_mpi(MPI_Bcast(&kind, 1, MPI_INT, first, PETSC_COMM_WORLD));
+  check_mpi(MPI_Bcast(&length, 1, MPI_INT, first, PETSC_COMM_WORLD));
+  message.resize(static_cast<std::size_t>(length));
+  check_mpi(MPI_Bcast(message.data(), length, MPI_CHAR, first, PETSC_COMM_WORLD));
+  throw_shared(kind, message);
+}
+
+int run_processes(const std::function<int()>& program,
+                  const std::function<int(const std::exception&)>& describe) {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  int code = 0;
+  try {
+    return program();
+  } catch (const std::exception& error) {
+    const bool shared = dynamic_cast<const SharedFailure*>(&error) != nullptr;
+    if (!shared || rank == 0) code = describe(error);
+    if (!shared) {
+      std::fflush(nullptr);
+      MPI_Abort(PETSC_COMM_WORLD, code);
+    }
+  }
+  check_mpi(MPI_Bcast(&code, 1, MPI_INT, 0, PETSC_COMM_WORLD));
+  return code;
+}
+
+double sum_of_all(double value) { return reduce(value, MPI_DOUBLE, MPI_SUM); }
+std::int64_t sum_of_all(std::int64_t value) { return reduce(value, MPI_INT64_T, MPI_SUM); }
+std::vector<double> sum_of_all(std::vector<double> values) {
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
+                          MPI_SUM, PETSC_COMM_WORLD));
+  return values;
+}
+double largest_of_all(double value) { return reduce(value, MPI_DOUBLE, MPI_MAX); }
+
+}  // namespace carat
