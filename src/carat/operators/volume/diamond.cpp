@@ -343,7 +343,7 @@ void VolumeDiamondAssembly::compute_faces() {
       std::array<FaceBlock, kMostDiamondCorners + 1> waiting;  // by valence
       for (Index f = begin; f < end; ++f) {
         const Index valence = mesh_.face_mesh().faces().size(f);
-        if (!plain() || !has_cells(f) || !has_face_diamond_block(valence)) {
+        if (!plain() || !has_diamonds(f) || !has_face_diamond_block(valence)) {
           compute_isotropic_face(f);
           continue;
         }
