@@ -68,10 +68,12 @@ struct MeshPart {
   Mesh own_mesh() const;
 };
 
+/// \cond
 template <>
 PolygonMesh MeshPart<PolygonMesh>::own_mesh() const;
 template <>
 PolyhedralMesh MeshPart<PolyhedralMesh>::own_mesh() const;
+/// \endcond
 
 /// Cost: that of the part, n log n.
 MeshPart<PolygonMesh> part_of(const PolygonMesh& mesh, const MeshDivision& division, Index part);
