@@ -61,15 +61,47 @@ void report_pairs(Session& session, const EigenPairs& pairs) {
                       {"solves", pairs.solves},
                       {"bytes", pairs.bytes}};
   session.say("solver: " + factor.method +
-              (pairs.iterations > 0 ? ", " + count(pairs.iterations, "iteration") : "") + ", " +
-              count(pairs.solves, "solve") + ", " + text(1e-6 * static_cast<double>(pairs.bytes)) +
-              " MB" + (pairs.reason.empty() ? "" : " (" + pairs.reason + ")"));
+              (pairs.iterations > 0 ? ", " + count(pairs.iterations, "iteration") : "") +
+              (pairs.solves > 0 ? ", " + count(pairs.solves, "solve") + ", " +
+                                      text(1e-6 * static_cast<double>(pairs.bytes)) + " MB"
+                                : "") +
+              (pairs.reason.empty() ? "" : " (" + pairs.reason + ")"));
+}
+
+template <class Data>
+void write_modes(Session& session, const Options& options, const EigenPairs& pairs, Data& data) {
+  if (options.output.empty()) return;
+  data.fields.vertex.clear();
+  element_fields(data).clear();
+  for (Index k = 0; k < pairs.values.size(); ++k)
+    data.fields.vertex.push_back(
+        scalar_field("mode_" + std::to_string(k + 1), pairs.vectors.col(k)));
+  write_output(session, options.output, "Eigenmodes", std::move(data));
+}
+
+template <class Data>
+EigenPairs pairs_by_engine(Session& session, const Options& options, const Data& data,
+                           const std::vector<Index>& fixed) {
+  if (options.solver != "auto")
+    throw InvalidOption("--solver " + options.solver +
+                        " is of the embedded engine; choose SLEPc's by its options, e.g. "
+                        "-st_pc_type");
+  const EngineProblem problem =
+      engine_problem(session, data.mesh, options.discretization, DiscretizationParts::Matrices);
+  return session.phase("solve",
+                       [&] { return session.engine()->eigenmodes(problem, options.count, fixed); });
 }
 
 template <class Data>
 void find_modes(Session& session, const Options& options, Data& data) {
   check_output_kind(options.output, words(data.mesh));
   const std::vector<Index> fixed = dirichlet_vertices(data.mesh, options.dirichlet);
+  if (session.engine() != nullptr) {
+    const EigenPairs pairs = pairs_by_engine(session, options, data, fixed);
+    report_pairs(session, pairs);
+    write_modes(session, options, pairs, data);
+    return;
+  }
   const Discretization discretization =
       discretize(session, data.mesh, options.discretization, DiscretizationParts::Matrices);
   EigenOptions solver{.method = eigen_method(options.solver),
@@ -87,13 +119,7 @@ void find_modes(Session& session, const Options& options, Data& data) {
   session.report()["options"]["count"] = options.count;
   session.report()["options"]["dirichlet"] = options.dirichlet;
   report_pairs(session, pairs);
-  if (options.output.empty()) return;
-  data.fields.vertex.clear();
-  element_fields(data).clear();
-  for (Index k = 0; k < pairs.values.size(); ++k)
-    data.fields.vertex.push_back(
-        scalar_field("mode_" + std::to_string(k + 1), pairs.vectors.col(k)));
-  write_output(session, options.output, "Eigenmodes", std::move(data));
+  write_modes(session, options, pairs, data);
 }
 
 void run(Session& session, const Options& options) {
@@ -118,6 +144,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "in small volumes, with conjugate gradients in large ones.\n"
                  "Others: cholesky, iterative")
       ->type_name("NAME");
+  declare_engine_option(app);
   declare_operator_options(app, options->discretization, Application::Eigenmodes);
   return [options](Session& session) { run(session, *options); };
 }

@@ -178,10 +178,37 @@ void measure_each(Session& session, const Options& options, Data& data,
   write_output(session, options.output, "Geodesic distances", std::move(data));
 }
 
+/// Over several processes: writes the distance, not its direction.
+template <class Data>
+void measure_by_engine(Session& session, const Options& options, const SourceSets& sets,
+                       Data& data) {
+  if (options.solver != "auto" || options.each || options.edge_length != "max" ||
+      options.directions != "samples")
+    throw InvalidOption(
+        "--solver, --each, --edge-length and --directions are of the embedded engine; leave them "
+        "out");
+  const EngineProblem problem =
+      engine_problem(session, data.mesh, options.discretization, DiscretizationParts::Gradient);
+  double time_step = 0;
+  const GeodesicDistance distance = session.phase("solve", [&] {
+    return session.engine()->geodesics(problem, options.t_coef, sets.front(), time_step);
+  });
+  session.report()["options"]["t_coef"] = options.t_coef;
+  session.report()["time_step"] = time_step;
+  report_distance(session, distance);
+  data.fields.vertex = {scalar_field("distance", distance.values)};
+  element_fields(data).clear();
+  write_output(session, options.output, "Geodesic distance", std::move(data));
+}
+
 template <class Data>
 void measure(Session& session, const Options& options, Data& data) {
   if (!is_matrix(options.output)) check_output_kind(options.output, words(data.mesh));
   const SourceSets sets = source_sets(options, data.mesh.n_vertices());
+  if (session.engine() != nullptr) {
+    measure_by_engine(session, options, sets, data);
+    return;
+  }
   const bool has_directions = !options.output.empty() && !options.each;
   const bool of_elements = options.directions == "elements";
   Discretization discretization = discretize(
@@ -278,6 +305,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "Of the distance: auto, cholesky, multigrid,\n"
                  "incomplete-cholesky, sparser-cholesky")
       ->type_name("NAME");
+  declare_engine_option(app);
   declare_operator_options(app, options->discretization, Application::Geodesics);
   return [options](Session& session) { run(session, *options); };
 }

@@ -162,9 +162,14 @@ DegenerateElement as_option(const DegenerateElement& error) {
 }
 
 template <class Mesh>
-Discretization discretize_mesh(Session& session, const Mesh& mesh, const OperatorOptions& options,
-                               DiscretizationParts parts, const Coefficient& coefficient,
-                               const SolverOptions* poisson) {
+struct LibraryOperator {
+  const OperatorEntry<Mesh>& entry;
+  DiscretizationOptions options;
+};
+
+/// The operator and its options as the library takes them.
+template <class Mesh>
+LibraryOperator<Mesh> library_operator(const Mesh& mesh, const OperatorOptions& options) {
   const OperatorChoice choice = default_choice(mesh, options.application);
   const OperatorEntry<Mesh>& entry =
       choose_operator(mesh, options.name.empty() ? choice.name : options.name);
@@ -174,6 +179,28 @@ Discretization discretize_mesh(Session& session, const Mesh& mesh, const Operato
     if (options.mass.empty()) library_options.mass = choice.mass;
     if (!options.theta) library_options.theta = choice.theta;
   }
+  return {entry, std::move(library_options)};
+}
+
+template <class Mesh>
+EngineProblem problem_of(Session& session, const Mesh& mesh, const OperatorOptions& options,
+                         DiscretizationParts parts, const std::string& coefficient,
+                         Matrix of_cells) {
+  LibraryOperator<Mesh> chosen = library_operator(mesh, options);
+  chosen.options.parts = parts;
+  chosen.options.cell_coefficient = std::move(of_cells);
+  session.report()["options"] =
+      to_json(chosen.entry.name, chosen.entry.options, chosen.entry.settle(chosen.options));
+  session.report()["processes"] = session.engine()->n_processes();
+  return {&mesh, chosen.entry.name, std::move(chosen.options), coefficient};
+}
+
+template <class Mesh>
+Discretization discretize_mesh(Session& session, const Mesh& mesh, const OperatorOptions& options,
+                               DiscretizationParts parts, const Coefficient& coefficient,
+                               const SolverOptions* poisson) {
+  const auto& [entry, chosen] = library_operator(mesh, options);
+  DiscretizationOptions library_options = chosen;
   library_options.parts = parts;
   if (poisson) library_options.form = poisson_form(mesh, entry.name, *poisson);
   library_options.coefficient = coefficient.function;
@@ -298,6 +325,18 @@ Discretization discretize(Session& session, const PolyhedralMesh& mesh,
                           const OperatorOptions& options, DiscretizationParts parts,
                           const Coefficient& coefficient, const SolverOptions* poisson) {
   return discretize_mesh(session, mesh, options, parts, coefficient, poisson);
+}
+
+EngineProblem engine_problem(Session& session, const PolygonMesh& mesh,
+                             const OperatorOptions& options, DiscretizationParts parts,
+                             const std::string& coefficient, Matrix of_cells) {
+  return problem_of(session, mesh, options, parts, coefficient, std::move(of_cells));
+}
+
+EngineProblem engine_problem(Session& session, const PolyhedralMesh& mesh,
+                             const OperatorOptions& options, DiscretizationParts parts,
+                             const std::string& coefficient, Matrix of_cells) {
+  return problem_of(session, mesh, options, parts, coefficient, std::move(of_cells));
 }
 
 }  // namespace carat::cli

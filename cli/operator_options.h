@@ -8,6 +8,7 @@
 #include "carat/apps/poisson.h"
 #include "carat/apps/recommended.h"
 #include "carat/operators/registry.h"
+#include "cli/engine.h"
 #include "cli/session.h"
 
 namespace CLI {
@@ -49,5 +50,13 @@ Discretization discretize(Session& session, const PolyhedralMesh& mesh,
                           const OperatorOptions& options, DiscretizationParts parts,
                           const Coefficient& coefficient = {},
                           const SolverOptions* poisson = nullptr);
+
+/// The same for an engine: reports the options, assembles nothing.
+EngineProblem engine_problem(Session& session, const PolygonMesh& mesh,
+                             const OperatorOptions& options, DiscretizationParts parts,
+                             const std::string& coefficient = {}, Matrix of_cells = {});
+EngineProblem engine_problem(Session& session, const PolyhedralMesh& mesh,
+                             const OperatorOptions& options, DiscretizationParts parts,
+                             const std::string& coefficient = {}, Matrix of_cells = {});
 
 }  // namespace carat::cli

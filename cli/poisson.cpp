@@ -153,10 +153,42 @@ void report_conditions(Session& session, const BoundaryConditions& conditions,
               count(number(conditions.robin_sides), "Robin " + side));
 }
 
+/// Over several processes: writes u, not its gradient.
+template <class Data>
+void solve_by_engine(Session& session, const Options& options, const Given& given,
+                     const BoundaryConditions& conditions, Data& data) {
+  if (options.solver != "auto")
+    throw InvalidOption("--solver " + options.solver +
+                        " is of the embedded engine; choose PETSc's by its options, e.g. -pc_type");
+  const EngineProblem problem = engine_problem(
+      session, data.mesh, options.discretization, DiscretizationParts::Matrices,
+      options.coefficient.value_or(""),
+      options.coefficient_field.empty() ? Matrix()
+                                        : cell_coefficient(data, options.coefficient_field));
+  const PoissonSolution solution = session.phase("solve", [&] {
+    return session.engine()->poisson(problem, conditions, given.rhs.at(data.mesh.points()));
+  });
+  report_conditions(session, conditions, words(data.mesh).side);
+  SolverInfo info;
+  info.reason = "processes: " + std::to_string(session.engine()->n_processes());
+  report_solution(session, info, solution, solution.values);
+  data.fields.vertex = {scalar_field("u", solution.values)};
+  element_fields(data).clear();
+  if (given.exact)
+    compare(session, data.mesh,
+            discretize(session, data.mesh, options.discretization, DiscretizationParts::Matrices),
+            conditions, *given.exact, solution.values, data.fields.vertex);
+  write_output(session, options.output, "Poisson", std::move(data));
+}
+
 template <class Data>
 void solve(Session& session, const Options& options, const Given& given, Data& data) {
   check_output_kind(options.output, words(data.mesh));
   BoundaryConditions conditions = boundary_conditions(data, given.boundary);
+  if (session.engine() != nullptr) {
+    solve_by_engine(session, options, given, conditions, data);
+    return;
+  }
   if (const Expression* const dirichlet = given.boundary.dirichlet.everywhere())
     conditions.dirichlet_function = *dirichlet;
   const bool writes = !options.output.empty();
@@ -246,6 +278,7 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "cholesky, multigrid, incomplete-cholesky,\n"
                  "sparser-cholesky")
       ->type_name("NAME");
+  declare_engine_option(app);
   declare_operator_options(app, options->discretization, Application::Poisson);
   return [options](Session& session) { run(session, *options); };
 }

@@ -36,6 +36,12 @@ struct Pair {
   PetscVector vector;
 };
 
+/// How eigenpairs were found, over all solvers that took part.
+struct Work {
+  std::string method;
+  Index iterations = 0;  // of the inner solver
+};
+
 /// S x = lambda M x with rows that take no part far above all eigenvalues.
 class Problem {
  public:
@@ -44,7 +50,7 @@ class Problem {
           const std::vector<Index>& dirichlet_vertices);
 
   /// The smallest pairs orthogonal to the given vectors by mass.
-  std::vector<Pair> smallest(Index count, const std::vector<Vec>& complement) const;
+  std::vector<Pair> smallest(Index count, const std::vector<Vec>& complement, Work& work) const;
   /// Constants of components that no fixed row touches, normalised.
   std::vector<PetscVector> constants() const;
   void normalise(Vec x) const;
@@ -167,7 +173,8 @@ std::vector<PetscVector> Problem::constants() const {
   return vectors;
 }
 
-std::vector<Pair> Problem::smallest(Index count, const std::vector<Vec>& complement) const {
+std::vector<Pair> Problem::smallest(Index count, const std::vector<Vec>& complement,
+                                    Work& work) const {
   SlepcSolver solver;
   ST transform = nullptr;
   KSP inner = nullptr;
@@ -201,6 +208,12 @@ std::vector<Pair> Problem::smallest(Index count, const std::vector<Vec>& complem
   check(EPSSetInitialSpace(solver, 1, starts));
   check(EPSSetFromOptions(solver));
   check(EPSSolve(solver));
+  EPSType type = nullptr;
+  PetscInt iterations = 0;
+  check(EPSGetType(solver, &type));
+  check(KSPGetTotalIterations(inner, &iterations));
+  work.method = std::string("SLEPc ") + type;
+  work.iterations += static_cast<Index>(iterations);
   PetscInt converged = 0;
   check(EPSGetConverged(solver, &converged));
   if (converged < count)
@@ -257,16 +270,17 @@ EigenPairs solve(const MeshPart<Mesh>& part, const Discretization& discretizatio
   std::vector<Pair> pairs;
   std::vector<Vec> complement(constants.begin(), constants.end());
   EigenPairs result;
+  Work work;
   result.zero_modes = static_cast<Index>(constants.size());
   const Index wanted = count - std::min(count, result.zero_modes);
   if (wanted > 0) {
-    pairs = problem.smallest(wanted, complement);
+    pairs = problem.smallest(wanted, complement, work);
     const auto ascending = [](const Pair& a, const Pair& b) { return a.value < b.value; };
     std::sort(pairs.begin(), pairs.end(), ascending);
     for (const Pair& pair : pairs) complement.push_back(pair.vector);
     // The Krylov space of one vector may miss members of a cluster.
     while (static_cast<Index>(complement.size()) < problem.n_free) {
-      std::vector<Pair> next = problem.smallest(1, complement);
+      std::vector<Pair> next = problem.smallest(1, complement, work);
       if (!(next[0].value < pairs[static_cast<std::size_t>(wanted) - 1].value * (1 - kCluster)))
         break;
       complement.push_back(next[0].vector);
@@ -276,6 +290,9 @@ EigenPairs solve(const MeshPart<Mesh>& part, const Discretization& discretizatio
   }
   for (Index k = std::min(count, result.zero_modes); k-- > 0;)
     pairs.insert(pairs.begin(), Pair{0, std::move(constants[static_cast<std::size_t>(k)])});
+  result.method = EigenMethod::Iterative;
+  result.factor.method = work.method;
+  result.iterations = work.iterations;
   result.values.resize(count);
   result.residuals.resize(count);
   result.vectors.resize(problem.exchange.n_here(), count);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <climits>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 
@@ -113,13 +114,16 @@ int run_processes(const std::function<int()>& program,
   } catch (const std::exception& error) {
     const bool shared = dynamic_cast<const SharedFailure*>(&error) != nullptr;
     if (!shared || rank == 0) code = describe(error);
-    if (!shared) {
-      std::fflush(nullptr);
-      MPI_Abort(PETSC_COMM_WORLD, code);
-    }
+    if (!shared) end_job(code);
   }
   check_mpi(MPI_Bcast(&code, 1, MPI_INT, 0, PETSC_COMM_WORLD));
   return code;
+}
+
+void end_job(int exit_code) {
+  std::fflush(nullptr);
+  MPI_Abort(PETSC_COMM_WORLD, exit_code);
+  std::abort();
 }
 
 double sum_of_all(double value) { return reduce(value, MPI_DOUBLE, MPI_SUM); }

@@ -52,6 +52,9 @@ void together(const std::function<void()>& work);
 int run_processes(const std::function<int()>& program,
                   const std::function<int(const std::exception&)>& describe);
 
+/// Ends all processes of the job, whatever they do.
+[[noreturn]] void end_job(int exit_code);
+
 /// Collective: sums over all processes.
 double sum_of_all(double value);
 std::int64_t sum_of_all(std::int64_t value);

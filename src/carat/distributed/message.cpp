@@ -1,0 +1,139 @@
+#include "carat/distributed/message.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+#include "carat/base/error.h"
+#include "carat/distributed/petsc.h"
+
+namespace carat {
+namespace {
+
+constexpr std::size_t kPiece = std::size_t{1} << 28;
+constexpr int kTag = 1;
+
+void put(Message& message, const Csr& rows) {
+  message.put_list(rows.offsets);
+  message.put_list(rows.indices);
+}
+
+void take(Message& message, Csr& rows) {
+  message.take_list(rows.offsets);
+  message.take_list(rows.indices);
+}
+
+void put(Message& message, const Points& points) {
+  message.put_list(Array<double>(points.data(), points.data() + points.size()));
+}
+
+void take(Message& message, Points& points) {
+  Array<double> values;
+  message.take_list(values);
+  points = Eigen::Map<const Points>(values.data(), static_cast<Eigen::Index>(values.size()) / 3, 3);
+}
+
+void put(Message& message, const std::vector<bool>& flags) {
+  message.put_list(std::vector<char>(flags.begin(), flags.end()));
+}
+
+void take(Message& message, std::vector<bool>& flags) {
+  std::vector<char> values;
+  message.take_list(values);
+  flags.assign(values.begin(), values.end());
+}
+
+void put(Message& message, const PartNumbers& numbers) {
+  for (const Index value : {numbers.part, numbers.n_parts, numbers.first_row, numbers.end_row,
+                            numbers.n_vertices, numbers.n_components})
+    message.put(value);
+  for (const Array<Index>* list :
+       {&numbers.vertices, &numbers.vertex_rows, &numbers.vertex_components, &numbers.elements,
+        &numbers.interfaces})
+    message.put_list(*list);
+  put(message, numbers.own_elements);
+  put(message, numbers.own_interfaces);
+}
+
+void take(Message& message, PartNumbers& numbers) {
+  for (Index* const value : {&numbers.part, &numbers.n_parts, &numbers.first_row, &numbers.end_row,
+                             &numbers.n_vertices, &numbers.n_components})
+    message.take(*value);
+  for (Array<Index>* list : {&numbers.vertices, &numbers.vertex_rows, &numbers.vertex_components,
+                             &numbers.elements, &numbers.interfaces})
+    message.take_list(*list);
+  take(message, numbers.own_elements);
+  take(message, numbers.own_interfaces);
+}
+
+}  // namespace
+
+void Message::put_bytes(const void* data, std::size_t size) {
+  if (size == 0) return;
+  bytes_.resize(bytes_.size() + size);
+  std::memcpy(bytes_.data() + bytes_.size() - size, data, size);
+}
+
+void Message::take_bytes(void* data, std::size_t size) {
+  if (size > bytes_.size() - taken_) throw Error("a message of another process is too short");
+  if (size > 0) std::memcpy(data, bytes_.data() + taken_, size);
+  taken_ += size;
+}
+
+void Message::send(int process) const {
+  const std::uint64_t size = bytes_.size();
+  MPI_Send(&size, 1, MPI_UINT64_T, process, kTag, PETSC_COMM_WORLD);
+  for (std::size_t at = 0; at < bytes_.size(); at += kPiece)
+    MPI_Send(bytes_.data() + at, static_cast<int>(std::min(kPiece, bytes_.size() - at)), MPI_BYTE,
+             process, kTag, PETSC_COMM_WORLD);
+}
+
+Message Message::receive(int process) {
+  std::uint64_t size = 0;
+  MPI_Recv(&size, 1, MPI_UINT64_T, process, kTag, PETSC_COMM_WORLD, MPI_STATUS_IGNORE);
+  Message message;
+  message.bytes_.resize(static_cast<std::size_t>(size));
+  for (std::size_t at = 0; at < message.bytes_.size(); at += kPiece)
+    MPI_Recv(message.bytes_.data() + at,
+             static_cast<int>(std::min(kPiece, message.bytes_.size() - at)), MPI_BYTE, process,
+             kTag, PETSC_COMM_WORLD, MPI_STATUS_IGNORE);
+  return message;
+}
+
+void put(Message& message, const MeshPart<PolygonMesh>& part) {
+  put(message, part.numbers);
+  put(message, part.mesh.points());
+  put(message, part.mesh.faces());
+}
+
+void put(Message& message, const MeshPart<PolyhedralMesh>& part) {
+  put(message, part.numbers);
+  put(message, part.mesh.points());
+  put(message, part.mesh.face_mesh().faces());
+  put(message, part.mesh.cells());
+  message.put_list(part.mesh.face_cells());
+}
+
+void take(Message& message, MeshPart<PolygonMesh>& part) {
+  Points points;
+  Csr faces;
+  take(message, part.numbers);
+  take(message, points);
+  take(message, faces);
+  part.mesh = PolygonMesh(std::move(points), std::move(faces));
+}
+
+void take(Message& message, MeshPart<PolyhedralMesh>& part) {
+  Points points;
+  Csr faces, cells;
+  Array<FaceCells> face_cells;
+  take(message, part.numbers);
+  take(message, points);
+  take(message, faces);
+  take(message, cells);
+  message.take_list(face_cells);
+  part.mesh = PolyhedralMesh::from_face_cells(std::move(points), std::move(faces), std::move(cells),
+                                              std::move(face_cells));
+}
+
+}  // namespace carat

@@ -1,0 +1,59 @@
+#pragma once
+// Bytes between processes: put on one side, taken in the same order on the other.
+
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "carat/mesh/mesh_part.h"
+
+namespace carat {
+
+class Message {
+ public:
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value>
+  void put(const Value& value) { put_bytes(&value, sizeof(Value)); }
+  template <class List>
+  requires std::is_trivially_copyable_v<typename List::value_type> && requires(const List& list) {
+    list.data();
+  }
+  void put_list(const List& list) {
+    put(static_cast<std::uint64_t>(list.size()));
+    put_bytes(list.data(), list.size() * sizeof(typename List::value_type));
+  }
+
+  template <class Value>
+  requires std::is_trivially_copyable_v<Value>
+  void take(Value& value) { take_bytes(&value, sizeof(Value)); }
+  template <class List>
+  requires std::is_trivially_copyable_v<typename List::value_type> && requires(List& list) {
+    list.resize(0);
+  }
+  void take_list(List& list) {
+    std::uint64_t size = 0;
+    take(size);
+    list.resize(static_cast<std::size_t>(size));
+    take_bytes(list.data(), list.size() * sizeof(typename List::value_type));
+  }
+
+  /// To another process, in pieces that MPI can count; receive() there.
+  void send(int process) const;
+  static Message receive(int process);
+  std::size_t size() const { return bytes_.size(); }
+
+ private:
+  void put_bytes(const void* data, std::size_t size);
+  void take_bytes(void* data, std::size_t size);
+
+  std::vector<char> bytes_;
+  std::size_t taken_ = 0;
+};
+
+void put(Message& message, const MeshPart<PolygonMesh>& part);
+void put(Message& message, const MeshPart<PolyhedralMesh>& part);
+void take(Message& message, MeshPart<PolygonMesh>& part);
+void take(Message& message, MeshPart<PolyhedralMesh>& part);
+
+}  // namespace carat
