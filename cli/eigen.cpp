@@ -99,6 +99,10 @@ void find_modes(Session& session, const Options& options, Data& data) {
   if (session.engine() != nullptr) {
     const EigenPairs pairs = pairs_by_engine(session, options, data, fixed);
     report_pairs(session, pairs);
+    session.report()["solver"] = {{"kind", "slepc"},
+                                  {"method", pairs.factor.method},
+                                  {"processes", session.engine()->n_processes()},
+                                  {"iterations", pairs.iterations}};
     write_modes(session, options, pairs, data);
     return;
   }

@@ -172,6 +172,11 @@ void solve_by_engine(Session& session, const Options& options, const Given& give
   SolverInfo info;
   info.reason = "processes: " + std::to_string(session.engine()->n_processes());
   report_solution(session, info, solution, solution.values);
+  session.report()["solver"] = {{"kind", "petsc"},
+                                {"method", solution.solve.method},
+                                {"processes", session.engine()->n_processes()},
+                                {"iterations", solution.solve.iterations},
+                                {"residual", solution.solve.residual}};
   data.fields.vertex = {scalar_field("u", solution.values)};
   element_fields(data).clear();
   if (given.exact)
