@@ -63,6 +63,7 @@ class Problem {
  private:
   PetscMatrix stiffness_, mass_, like_;
   double shift_ = 0;
+  int dimension_;
   std::vector<Index> components_;  // of the own rows
   std::size_t n_components_;
 };
@@ -70,7 +71,9 @@ class Problem {
 template <class Mesh>
 Problem::Problem(const MeshPart<Mesh>& part, const Discretization& d,
                  const std::vector<Index>& dirichlet_vertices)
-    : exchange(part.numbers), n_components_(static_cast<std::size_t>(part.numbers.n_components)) {
+    : exchange(part.numbers),
+      dimension_(dimension(part.mesh)),
+      n_components_(static_cast<std::size_t>(part.numbers.n_components)) {
   const PartNumbers& numbers = part.numbers;
   Vector is_free = Vector::Zero(exchange.n_own());
   Vector row_sums;
@@ -125,7 +128,7 @@ Problem::Problem(const MeshPart<Mesh>& part, const Discretization& d,
     throw Shared<SolverFailure>("the mass is not positive definite: a diagonal entry is " +
                                 std::to_string(lightest));
   const double total = sum_of_all(row_sums.sum());
-  shift_ = first_eigenvalue(total, dimension(part.mesh));
+  shift_ = first_eigenvalue(total, dimension_);
   const PetscInt n_held = static_cast<PetscInt>(held.size());
   // Rows that take no part: a value above all others.
   check(MatZeroRowsColumns(stiffness_, n_held, held.data(), largest, nullptr, nullptr));
@@ -191,7 +194,7 @@ std::vector<Pair> Problem::smallest(Index count, const std::vector<Vec>& complem
   check(STSetMatStructure(transform, SUBSET_NONZERO_PATTERN));
   if (like_) check(STSetPreconditionerMat(transform, like_));
   check(STGetKSP(transform, &inner));
-  set_spd_defaults(inner);
+  set_spd_defaults(inner, dimension_);
   if (!complement.empty())
     check(EPSSetDeflationSpace(solver, static_cast<PetscInt>(complement.size()),
                                const_cast<Vec*>(complement.data())));  // as in C

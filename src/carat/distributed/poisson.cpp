@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 #include "carat/distributed/processes.h"
 #include "carat/distributed/spd_iteration.h"
@@ -12,6 +13,9 @@ namespace {
 
 // A right-hand side that misses balance by more than this is a mistake, not discretisation error.
 constexpr double kImbalanceLimit = 0.1;
+
+template <class Mesh>
+constexpr int kDimension = std::is_same_v<Mesh, PolygonMesh> ? 2 : 3;
 
 /// The conditions that are this part's to give.
 BoundaryConditions own_conditions(const BoundaryConditions& all, const PartNumbers& numbers) {
@@ -186,7 +190,7 @@ void DistributedPoisson::set_up(const MeshPart<Mesh>& part, const Discretization
     for (Index row = 0; row < n_own; ++row)
       if (it.held[static_cast<std::size_t>(row)]) lift.values()[row] = 0;
   }
-  it.solver = std::make_unique<SpdIteration>(std::move(system), std::move(like));
+  it.solver = std::make_unique<SpdIteration>(std::move(system), std::move(like), kDimension<Mesh>);
 }
 
 DistributedPoisson::DistributedPoisson(const MeshPart<PolygonMesh>& part,

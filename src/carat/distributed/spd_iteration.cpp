@@ -20,31 +20,33 @@ std::string number(double value) {
 
 }  // namespace
 
-void set_spd_defaults(KSP solver) {
+void set_spd_defaults(KSP solver, int dimension) {
   PC preconditioner = nullptr;
   check(KSPSetType(solver, KSPCG));
   check(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
   check(KSPSetTolerances(solver, kTolerance, 0, PETSC_DEFAULT, kIterations));
   check(KSPGetPC(solver, &preconditioner));
 #if defined(PETSC_HAVE_HYPRE)
-  check(PCSetType(preconditioner, PCHYPRE));
-  check(PCHYPRESetType(preconditioner, "boomeramg"));
-#else
-  check(PCSetType(preconditioner, PCGAMG));
+  if (dimension == 2) {
+    check(PCSetType(preconditioner, PCHYPRE));
+    check(PCHYPRESetType(preconditioner, "boomeramg"));
+    return;
+  }
 #endif
+  static_cast<void>(dimension);
+  check(PCSetType(preconditioner, PCGAMG));
 }
 
-SpdIteration::SpdIteration(PetscMatrix system, PetscMatrix like, const std::string& prefix)
+SpdIteration::SpdIteration(PetscMatrix system, PetscMatrix like, int dimension)
     : system_(std::move(system)), like_(std::move(like)) {
   check(KSPCreate(PETSC_COMM_WORLD, solver_.out()));
-  check(KSPSetOptionsPrefix(solver_, prefix.c_str()));
   Mat const preconditioned = like_ ? like_ : system_;
   MatNullSpace constants = nullptr;
   check(MatNullSpaceCreate(PETSC_COMM_WORLD, PETSC_TRUE, 0, nullptr, &constants));
   check(MatSetNearNullSpace(preconditioned, constants));
   check(MatNullSpaceDestroy(&constants));
   check(KSPSetOperators(solver_, system_, preconditioned));
-  set_spd_defaults(solver_);
+  set_spd_defaults(solver_, dimension);
   check(KSPSetFromOptions(solver_));
   check(KSPSetUp(solver_));
 }
