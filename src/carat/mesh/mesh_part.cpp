@@ -176,6 +176,11 @@ PartNumbers collect(const View& view, const MeshDivision& division, Index part) 
   numbers.end_row = division.first_row[part + 1];
   numbers.n_vertices = view.mesh.n_vertices();
   numbers.n_components = division.n_components;
+  std::size_t n_sides = 0;
+  for (const Index own : division.elements.row(part))
+    view.for_interfaces(own, [&](Index) { ++n_sides; });
+  // A manifold has at most one other element a side.
+  numbers.elements.reserve(static_cast<std::size_t>(division.elements.size(part)) + n_sides);
   for (const Index own : division.elements.row(part)) {
     numbers.elements.push_back(own);
     view.for_interfaces(own, [&](Index interface) {
@@ -185,6 +190,14 @@ PartNumbers collect(const View& view, const MeshDivision& division, Index part) 
     });
   }
   sort_unique(numbers.elements);
+  // Room first: large arrays that grow are new pages every time.
+  std::size_t n_vertices = 0, n_interfaces = 0;
+  for (const Index element : numbers.elements) {
+    n_vertices += view.vertices(element).size();
+    view.for_interfaces(element, [&](Index) { ++n_interfaces; });
+  }
+  numbers.vertices.reserve(n_vertices);
+  numbers.interfaces.reserve(n_interfaces);
   for (const Index element : numbers.elements) {
     numbers.own_elements.push_back(division.element_part[element] == part);
     const std::span<const Index> vertices = view.vertices(element);
@@ -196,6 +209,8 @@ PartNumbers collect(const View& view, const MeshDivision& division, Index part) 
       if (division.vertex_component[v] < 0) numbers.vertices.push_back(v);
   sort_unique(numbers.vertices);
   sort_unique(numbers.interfaces);
+  numbers.vertex_rows.reserve(numbers.vertices.size());
+  numbers.vertex_components.reserve(numbers.vertices.size());
   for (const Index v : numbers.vertices) {
     numbers.vertex_rows.push_back(division.vertex_row[v]);
     numbers.vertex_components.push_back(division.vertex_component[v]);
@@ -215,6 +230,10 @@ Points select(const Points& points, const Array<Index>& vertices) {
 /// The rows named, with their entries numbered by their places in `numbers`.
 Csr select(const Csr& rows, const Array<Index>& named, const Array<Index>& numbers) {
   Csr selected;
+  std::size_t n_entries = 0;
+  for (const Index row : named) n_entries += rows.row(row).size();
+  selected.offsets.reserve(named.size() + 1);
+  selected.indices.reserve(n_entries);
   for (const Index row : named) {
     for (const Index entry : rows.row(row)) selected.indices.push_back(place(numbers, entry));
     selected.offsets.push_back(static_cast<Index>(selected.indices.size()));
@@ -225,6 +244,8 @@ Csr select(const Csr& rows, const Array<Index>& named, const Array<Index>& numbe
 /// The rows of which a flag is set.
 Csr select(const Csr& rows, const std::vector<bool>& flags) {
   Csr selected;
+  selected.offsets.reserve(rows.offsets.size());
+  selected.indices.reserve(rows.indices.size());
   for (Index row = 0; row < rows.n_rows(); ++row) {
     if (!flags[row]) continue;
     const std::span<const Index> entries = rows.row(row);
@@ -270,6 +291,7 @@ MeshPart<PolyhedralMesh> part_of(const PolyhedralMesh& mesh, const MeshDivision&
     return at >= 0 && at < static_cast<Index>(elements.size()) && elements[at] == cell ? at : -1;
   };
   Array<FaceCells> face_cells;
+  face_cells.reserve(numbers.interfaces.size());
   for (const Index f : numbers.interfaces) {
     const FaceCells cells = mesh.face_cells()[f];
     face_cells.push_back({here(cells.below), here(cells.above)});
@@ -295,6 +317,8 @@ PolyhedralMesh MeshPart<PolyhedralMesh>::own_mesh() const {
   std::vector<bool> kept(static_cast<std::size_t>(mesh.n_faces()));
   Array<Index> kept_faces;
   Array<FaceCells> face_cells;
+  kept_faces.reserve(kept.size());
+  face_cells.reserve(kept.size());
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     const FaceCells cells{own(mesh.face_cells()[f].below), own(mesh.face_cells()[f].above)};
     kept[f] = cells.below >= 0 || cells.above >= 0;
