@@ -83,7 +83,7 @@ void check_division(const Mesh& mesh, const MeshDivision& division) {
         EXPECT_EQ(here, whole);
       }
     }
-    const Mesh alone = own.own_mesh();
+    const Mesh alone = own_mesh(own);
     EXPECT_EQ(alone.n_vertices(), own.mesh.n_vertices());
     EXPECT_EQ(n_elements(alone), division.elements.size(part));
   }

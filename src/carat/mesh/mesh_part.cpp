@@ -303,13 +303,13 @@ MeshPart<PolyhedralMesh> part_of(const PolyhedralMesh& mesh, const MeshDivision&
   return {std::move(own), std::move(numbers)};
 }
 
-template <>
-PolygonMesh MeshPart<PolygonMesh>::own_mesh() const {
-  return PolygonMesh(mesh.points(), select(mesh.faces(), numbers.own_elements));
+PolygonMesh own_mesh(const MeshPart<PolygonMesh>& part) {
+  return PolygonMesh(part.mesh.points(), select(part.mesh.faces(), part.numbers.own_elements));
 }
 
-template <>
-PolyhedralMesh MeshPart<PolyhedralMesh>::own_mesh() const {
+PolyhedralMesh own_mesh(const MeshPart<PolyhedralMesh>& part) {
+  const PolyhedralMesh& mesh = part.mesh;
+  const PartNumbers& numbers = part.numbers;
   Array<Index> number(numbers.own_elements.size());
   Index n_own = 0;
   for (Index c = 0; c < mesh.n_cells(); ++c) number[c] = numbers.own_elements[c] ? n_own++ : -1;

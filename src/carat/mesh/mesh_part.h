@@ -62,18 +62,12 @@ template <class Mesh>
 struct MeshPart {
   Mesh mesh;
   PartNumbers numbers;
-
-  /// The own elements alone, with the vertices numbered as in `mesh`: what methods need that couple
-  /// the vertices of single elements. Their matrices add up over all parts.
-  Mesh own_mesh() const;
 };
 
-/// \cond
-template <>
-PolygonMesh MeshPart<PolygonMesh>::own_mesh() const;
-template <>
-PolyhedralMesh MeshPart<PolyhedralMesh>::own_mesh() const;
-/// \endcond
+/// The own elements alone, with the vertices numbered as in the part: what methods need that couple
+/// the vertices of single elements. Their matrices add up over all parts.
+PolygonMesh own_mesh(const MeshPart<PolygonMesh>& part);
+PolyhedralMesh own_mesh(const MeshPart<PolyhedralMesh>& part);
 
 /// Cost: that of the part, n log n.
 MeshPart<PolygonMesh> part_of(const PolygonMesh& mesh, const MeshDivision& division, Index part);

@@ -38,7 +38,7 @@ Discretization discretize_own(const MeshPart<Mesh>& part, const std::string& nam
   if (!entry.claims.face_local || !entry.claims.vertex_unknowns)
     throw InvalidOption("the operator " + name +
                         " cannot be assembled in parts; choose another, e.g. diamond");
-  return discretize(part.own_mesh(), name, on_own_elements(options, part.numbers));
+  return discretize(own_mesh(part), name, on_own_elements(options, part.numbers));
 }
 
 template <class Mesh>
@@ -48,7 +48,7 @@ SparseMatrix sparser_own(const MeshPart<Mesh>& part, const Discretization& discr
   Discretization own;
   own.name = discretization.name;
   own.options = on_own_elements(discretization.options, part.numbers);
-  const Mesh mesh = part.own_mesh();
+  const Mesh mesh = own_mesh(part);
   const std::function<SparseMatrix()> assemble = sparser_stiffness(mesh, own);
   return assemble();
 }
