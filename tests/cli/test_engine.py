@@ -60,9 +60,19 @@ class Engine(CaratTest):
         one = self.report("eigen", mesh, "-k", "6", "--dirichlet")["eigenvalues"]
         run = self.job(2, "eigen", mesh, "-k", "6", "--dirichlet", "--json")
         self.assertEqual(run.returncode, 0, run.stderr)
-        many = json.loads(run.stdout)["eigenvalues"]
+        report = json.loads(run.stdout)
+        self.assertEqual(report["solver"]["kind"], "slepc")
+        self.assertEqual(report["solver"]["processes"], 2)
+        many = report["eigenvalues"]
         for a, b in zip(one, many, strict=True):
             self.assertLess(abs(a - b), 1e-9 * a)
+
+    def test_report_says_what_solved(self):
+        mesh = self.generate("plane-quads", 2, "mesh.vtu")
+        run = self.job(2, "poisson", mesh, "--rhs", "1", "--dirichlet", "0", "--json")
+        solver = json.loads(run.stdout)["solver"]
+        self.assertEqual((solver["kind"], solver["processes"]), ("petsc", 2))
+        self.assertLess(solver["residual"], 1e-10)
 
     def test_options_of_petsc_count(self):
         mesh = self.generate("plane-quads", 2, "mesh.vtu")
