@@ -29,7 +29,7 @@ TEST(Partition, all_meshes_get_parts_that_exist) {
         const std::vector<Index> parts = partition(mesh, n_parts);
         const MeshDivision division = divide(mesh, n_parts, parts);
         EXPECT_EQ(division.elements.indices.size(), static_cast<std::size_t>(n_elements(mesh)));
-        EXPECT_EQ(parts, partition(mesh, n_parts));
+        for (int again = 0; again < 5; ++again) EXPECT_EQ(parts, partition(mesh, n_parts));
       }
   };
   check(surfaces_to_divide());

@@ -43,16 +43,26 @@ ElementGraph element_graph(Index n_elements, const ForNeighbours& for_neighbours
   return graph;
 }
 
+/// One thread: several divide a graph differently from run to run.
 class ScotchGraph {
  public:
   explicit ScotchGraph(ElementGraph& graph) {
+    check(SCOTCH_contextInit(&context_));
+    check(SCOTCH_contextOptionSetNum(&context_, SCOTCH_OPTIONNUMDETERMINISTIC, 1));
+    check(SCOTCH_contextThreadSpawn(&context_, 1, nullptr));
     const SCOTCH_Num n = static_cast<SCOTCH_Num>(graph.offsets.size()) - 1;
     check(SCOTCH_graphInit(&graph_));
     check(SCOTCH_graphBuild(&graph_, 0, n, graph.offsets.data(), nullptr, nullptr, nullptr,
                             static_cast<SCOTCH_Num>(graph.neighbours.size()),
                             graph.neighbours.data(), graph.weights.data()));
+    check(SCOTCH_graphInit(&bound_));
+    check(SCOTCH_contextBindGraph(&context_, &graph_, &bound_));
   }
-  ~ScotchGraph() { SCOTCH_graphExit(&graph_); }
+  ~ScotchGraph() {
+    SCOTCH_graphExit(&bound_);
+    SCOTCH_graphExit(&graph_);
+    SCOTCH_contextExit(&context_);
+  }
   ScotchGraph(const ScotchGraph&) = delete;
   ScotchGraph& operator=(const ScotchGraph&) = delete;
 
@@ -63,7 +73,7 @@ class ScotchGraph {
     constexpr double kImbalance = 0.02;
     check(SCOTCH_stratGraphMapBuild(&strategy, SCOTCH_STRATQUALITY, n_parts, kImbalance));
     SCOTCH_randomReset();
-    const int failed = SCOTCH_graphPart(&graph_, n_parts, &strategy, parts.data());
+    const int failed = SCOTCH_graphPart(&bound_, n_parts, &strategy, parts.data());
     SCOTCH_stratExit(&strategy);
     check(failed);
     return parts;
@@ -73,7 +83,8 @@ class ScotchGraph {
   static void check(int failed) {
     if (failed != 0) throw SolverFailure("Scotch could not partition the mesh");
   }
-  SCOTCH_Graph graph_;
+  SCOTCH_Context context_;
+  SCOTCH_Graph graph_, bound_;
 };
 
 std::vector<Index> partition(ElementGraph graph, Index n_parts) {
