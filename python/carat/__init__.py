@@ -18,6 +18,8 @@ pointwise form is a solve with the mass.
 import atexit as _atexit
 
 from . import _core
+from ._curvature import mean_curvature
+from ._eigenmodes import Eigenmodes, eigenmodes
 from ._errors import (
     DegenerateElement,
     Error,
@@ -28,7 +30,9 @@ from ._errors import (
     SolverFailure,
 )
 from ._files import Family, FileFormat, View, families, formats, generate, read, show, write
-from ._mesh import Mesh, PolygonMesh, PolyhedralMesh, as_mesh
+from ._foreign import as_mesh
+from ._geodesics import HeatGeodesics
+from ._mesh import Mesh, PolygonMesh, PolyhedralMesh
 from ._operators import (
     Discretization,
     Finding,
@@ -37,14 +41,7 @@ from ._operators import (
     operators,
     stiffness,
 )
-from ._problems import (
-    Eigenmodes,
-    HeatGeodesics,
-    Poisson,
-    SolveReport,
-    eigenmodes,
-    mean_curvature,
-)
+from ._poisson import Poisson, SolveReport
 
 __version__: str = _core.version
 

@@ -17,7 +17,8 @@ import numpy.typing as npt
 from . import _arrays, _core
 from ._arrays import Floats
 from ._errors import InvalidOption, InvalidType
-from ._mesh import Mesh, PolygonMesh, PolyhedralMesh, as_mesh
+from ._foreign import as_mesh
+from ._mesh import Mesh, PolygonMesh, PolyhedralMesh
 from ._operators import _number, _whole
 
 PathLike = Union[str, "os.PathLike[str]"]

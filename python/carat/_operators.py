@@ -13,8 +13,11 @@ import scipy.sparse
 from . import _arrays, _core
 from ._arrays import Floats, Ints
 from ._errors import InvalidOption, InvalidType
-from ._mesh import Mesh, PolyhedralMesh, as_mesh
+from ._foreign import as_mesh
+from ._mesh import Mesh, PolyhedralMesh
 
+#: Called with a number that grows while work goes on.
+Progress = Callable[[int], object]
 #: K in div(K grad u): one number, one a cell, a symmetric tensor a cell, or a function of points.
 Coefficient = Union[float, npt.ArrayLike, Callable[[Floats], Any]]
 

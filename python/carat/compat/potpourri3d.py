@@ -8,7 +8,7 @@ from typing import Any, Optional
 import numpy as np
 import scipy.sparse
 
-from .. import _files, _mesh, _operators, _problems
+from .. import _files, _geodesics, _mesh, _operators
 from .._arrays import Floats, Ints
 from .._errors import InvalidOption
 
@@ -43,7 +43,7 @@ class MeshHeatMethodDistanceSolver:
 
     def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_robust: bool = True) -> None:
         del use_robust
-        self._heat = _problems.HeatGeodesics(V, F, t_coef=t_coef, edge_length="mean")
+        self._heat = _geodesics.HeatGeodesics(V, F, t_coef=t_coef, edge_length="mean")
 
     def compute_distance(self, v_ind: int) -> Floats:
         """(n,) distance from one vertex."""
