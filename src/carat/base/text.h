@@ -13,4 +13,11 @@ inline std::string gigabytes(double bytes) {
   return text;
 }
 
+/// "1.5e-09".
+inline std::string scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", value);
+  return text;
+}
+
 }  // namespace carat

@@ -3,18 +3,14 @@
 #include <cmath>
 #include <string>
 
+#include "carat/base/text.h"
 #include "carat/distributed/processes.h"
+#include "carat/solve/componentwise.h"
 
 namespace carat {
 namespace {
 
-// As in solve/componentwise.cpp.
-constexpr double kTolerance = 1e-10;
-constexpr Index kIterations = 5000;
-constexpr Index kCheckEvery = 10;
-constexpr double kVanished = 1e-290;
-constexpr double kSmallEnergy = 1e-200;
-constexpr int kRescaling = 300;
+using namespace componentwise;
 
 /// The matrix with the magnitudes of its entries.
 PetscMatrix magnitudes(Mat matrix) {
@@ -104,7 +100,7 @@ Vector solve_componentwise(Mat matrix, Vector inverse, Vector b, SolveReport& re
   }
   worst = error();
   if (!(worst <= kTolerance))
-    throw Shared<SolverFailure>("conjugate gradients left a residual of " + std::to_string(worst) +
+    throw Shared<SolverFailure>("conjugate gradients left a residual of " + scientific(worst) +
                                 " of its row after " + std::to_string(iterations) +
                                 " iterations, at most 1e-10 is a solution");
   report.iterations = std::max(report.iterations, iterations);

@@ -1,8 +1,8 @@
 #include "carat/distributed/spd_iteration.h"
 
 #include <cmath>
-#include <cstdio>
 
+#include "carat/base/text.h"
 #include "carat/distributed/processes.h"
 
 namespace carat {
@@ -11,12 +11,6 @@ namespace {
 constexpr double kTolerance = 1e-12, kAccepted = 1e-10;
 /// Multigrid that serves takes a few dozen.
 constexpr PetscInt kIterations = 200;
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 }  // namespace
 
@@ -90,7 +84,7 @@ PetscVector SpdIteration::solve(Vec right_hand_side, SolveReport& report) {
   report.residual = size > 0 ? left / size : 0;
   if (!solved)
     throw Shared<SolverFailure>(
-        report.method + " left a residual of " + number(report.residual) +
+        report.method + " left a residual of " + scientific(report.residual) +
         " of the right-hand side after " + std::to_string(report.iterations) +
         " iterations, at most 1e-10 is a solution; choose another solver by the options of PETSc, "
         "e.g. -pc_type cholesky -pc_factor_mat_solver_type mumps");

@@ -7,21 +7,15 @@
 #include "carat/base/error.h"
 #include "carat/base/interrupt.h"
 #include "carat/base/parallel.h"
+#include "carat/base/text.h"
 
 namespace carat {
 namespace {
 
-constexpr double kTolerance = 1e-10;
-constexpr Index kIterations = 5000;
-constexpr Index kCheckEvery = 10;
-/// Components that a row sums up to less than this are lost in the range of double precision.
-constexpr double kVanished = 1e-290;
+using namespace componentwise;
+
 /// Sums are those of blocks of so many rows, so that they do not depend on the threads.
 constexpr Index kRowsOfSum = 4096;
-/// Residual and direction are scaled up where the squares of their entries become this small, by a
-/// power of two that rounds nothing: their entries span twice the range of their squares.
-constexpr double kSmallEnergy = 1e-200;
-constexpr int kRescaling = 300;
 
 /// W right-hand sides, the values of a row side by side. Matrix and right-hand sides are multiplied
 /// by a power of two that brings the smallest diagonal entry near 1: bounds then do not depend on
@@ -90,9 +84,9 @@ class Iteration {
     }
     worst = errors(b);
     if (!(worst <= kTolerance).all())
-      throw SolverFailure("conjugate gradients left a residual of " +
-                          std::to_string(worst.maxCoeff()) + " of its row after " +
-                          std::to_string(iterations) + " iterations, at most 1e-10 is a solution");
+      throw SolverFailure("conjugate gradients left a residual of " + scientific(worst.maxCoeff()) +
+                          " of its row after " + std::to_string(iterations) +
+                          " iterations, at most 1e-10 is a solution");
     report.iterations = std::max(report.iterations, iterations);
     report.passes += iterations;
     report.traffic += iterations * (static_cast<double>(a_.nonZeros()) *

@@ -7,6 +7,22 @@
 
 namespace carat {
 
+/// What the iteration over one process and that over several have in common. Of matrices and
+/// right-hand sides in a unit in which the smallest diagonal entry is near 1.
+namespace componentwise {
+
+constexpr double kTolerance = 1e-10;
+constexpr Index kIterations = 5000;
+constexpr Index kCheckEvery = 10;
+/// Components that a row sums up to less than this are lost in the range of double precision.
+constexpr double kVanished = 1e-290;
+/// Residual and direction are scaled up where the squares of their entries become this small, by a
+/// power of two that rounds nothing: their entries span twice the range of their squares.
+constexpr double kSmallEnergy = 1e-200;
+constexpr int kRescaling = 300;
+
+}  // namespace componentwise
+
 /// Solves A x = b for symmetric positive definite A by conjugate gradients until every component
 /// is accurate, however small beside the largest: |b - A x|_i <= 1e-10 (|A| |x| + |b|)_i in every
 /// row [Oettli, Prager 1964], but for components below 1e-290. A unit that is another multiplies A

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <type_traits>
 
 #include "carat/base/error.h"
 #include "carat/base/interrupt.h"
 #include "carat/base/parallel.h"
+#include "carat/base/text.h"
 
 namespace carat {
 namespace {
@@ -26,12 +26,6 @@ constexpr Index kLanes = 8;
 constexpr Index kTogether = 8;
 /// Below so many values a thread costs more than it saves.
 constexpr std::int64_t kParallelFrom = 1 << 17;
-
-std::string scientific(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1e", value);
-  return text;
-}
 
 /// At most six of the residuals, evenly spaced, the last among them.
 std::string course(const std::vector<double>& history) {
