@@ -1,3 +1,7 @@
+#include <unistd.h>
+
+#include <filesystem>
+
 #include "carat/distributed/eigenmodes.h"
 #include "carat/distributed/processes.h"
 #include "parts.h"
@@ -75,6 +79,75 @@ TEST(DistributedEigenmodes, all_processes_refuse_bad_counts) {
   const Discretization d = discretize_part(part, "diamond");
   EXPECT_THROW(distributed_eigenmodes(part, d, 0), Shared<InvalidOption>);
   EXPECT_THROW(distributed_eigenmodes(part, d, 10), Shared<InvalidOption>);
+}
+
+/// A file of the job, gone before and after.
+class Checkpoint {
+ public:
+  Checkpoint() { remove(); }
+  ~Checkpoint() { remove(); }
+  std::filesystem::path path() const {
+    return std::filesystem::temp_directory_path() /
+           ("carat-eigen-" + std::to_string(::getuid()) + "-" + std::to_string(n_processes()));
+  }
+
+ private:
+  void remove() const {
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (rank() == 0) std::filesystem::remove(path());
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+};
+
+TEST(DistributedEigenmodes, goes_on_from_a_checkpoint) {
+  const Checkpoint file;
+  const PolygonMesh mesh = generate_mesh("plane-quads", {.level = 2, .jitter = 0.2});
+  const EigenPairs expected = eigenmodes(discretize(mesh, "diamond"), 40);
+  const auto solve = [&](const MeshPart<PolygonMesh>& part, Index count) {
+    const EigenPairs pairs =
+        distributed_eigenmodes(part, discretize_part(part, "diamond"), count, {}, file.path());
+    for (Index k = 0; k < count; ++k) {
+      EXPECT_NEAR(pairs.values[k], expected.values[k], 1e-9 * expected.values[39]);
+      EXPECT_LT(pairs.residuals[k], 1e-8);
+    }
+    return pairs;
+  };
+  const Index begun = solve(own_block(mesh), 30).iterations;
+  const auto size = std::filesystem::file_size(file.path());
+  // Other processes have the vertices when it goes on.
+  const MeshPart<PolygonMesh> other = own_part(mesh, scattered(mesh.n_faces(), n_processes()));
+  EXPECT_LT(solve(other, 40).iterations, begun);
+  EXPECT_GT(std::filesystem::file_size(file.path()), size);
+  // Nothing is left to find, but for what shows that nothing is missing.
+  EXPECT_LT(solve(own_block(mesh), 40).iterations, begun / 4);
+  EXPECT_LT(solve(own_block(mesh), 3).iterations, begun / 4);
+}
+
+TEST(DistributedEigenmodes, refuses_checkpoints_of_other_problems_and_damaged_ones) {
+  const Checkpoint file;
+  const PolygonMesh mesh = generate_mesh("plane-quads", {.level = 1});
+  const auto solve = [&](const PolygonMesh& of, const std::filesystem::path& path) {
+    const auto part = own_block(of);
+    distributed_eigenmodes(part, discretize_part(part, "diamond"), 5, {}, path);
+  };
+  solve(mesh, file.path());
+  solve(mesh, file.path());
+  const PolygonMesh other = generate_mesh("plane-quads", {.level = 1, .jitter = 0.2});
+  ASSERT_EQ(other.n_vertices(), mesh.n_vertices());
+  EXPECT_THROW(solve(other, file.path()), Shared<InvalidOption>);
+  EXPECT_THROW(solve(generate_mesh("plane-quads", {.level = 2}), file.path()), Shared<IoError>);
+  EXPECT_THROW(solve(mesh, file.path() / "in" / "none"), Shared<IoError>);
+  for (const int less : {1, 4000}) {
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (rank() == 0)
+      std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) - less);
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_THROW(solve(mesh, file.path()), Shared<IoError>);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (rank() == 0) std::filesystem::resize_file(file.path(), 5);
+  MPI_Barrier(MPI_COMM_WORLD);
+  EXPECT_THROW(solve(mesh, file.path()), Shared<IoError>);
 }
 
 }  // namespace

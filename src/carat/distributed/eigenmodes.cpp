@@ -8,6 +8,8 @@
 #include <numbers>
 #include <string>
 
+#include "carat/base/text.h"
+#include "carat/distributed/eigen_checkpoint.h"
 #include "carat/distributed/processes.h"
 #include "carat/distributed/spd_iteration.h"
 #include "carat/operators/common.h"
@@ -21,6 +23,10 @@ using SlepcSolver = PetscOwner<EPS, EPSDestroy>;
 constexpr double kTolerance = 1e-11;
 /// Values that differ by less are the same.
 constexpr double kCluster = 1e-8;
+/// Pairs from one checkpoint to the next.
+constexpr Index kBatch = 24;
+/// Pairs of a checkpoint with a larger residual belong to another problem.
+constexpr double kSameProblem = 1e-6;
 
 constexpr int dimension(const PolygonMesh&) { return 2; }
 constexpr int dimension(const PolyhedralMesh&) { return 3; }
@@ -31,14 +37,11 @@ double first_eigenvalue(double measure, int dimension) {
   return dimension == 2 ? 4 * pi / measure : std::pow(6 * pi * pi / measure, 2.0 / 3);
 }
 
-struct Pair {
-  double value;
-  PetscVector vector;
-};
+using Pair = DistributedPair;
 
 /// How eigenpairs were found, over all solvers that took part.
 struct Work {
-  std::string method;
+  std::string method = "eigenpairs of the checkpoint";
   Index iterations = 0;  // of the inner solver
 };
 
@@ -261,9 +264,27 @@ void turn(Vec vector, const PartNumbers& numbers, Vector& of_part) {
   if (largest_of_all(lowest == first && sign < 0 ? 1.0 : 0.0) > 0) of_part = -of_part;
 }
 
+/// The pairs of a checkpoint, which have to be some of this problem's.
+std::vector<Pair> saved_pairs(const std::filesystem::path& path, const Problem& problem,
+                              const PartNumbers& numbers) {
+  if (path.empty()) return {};
+  std::vector<Pair> pairs = load_pairs(path, numbers, problem.exchange);
+  for (const Pair& pair : pairs) {
+    problem.normalise(pair.vector);
+    const double residual = problem.residual(pair);
+    if (!(pair.value > 0) || !(residual <= kSameProblem))
+      throw Shared<InvalidOption>(path.string() + ": its eigenvalue " + scientific(pair.value) +
+                                  " leaves a residual of " + scientific(residual) +
+                                  ": the checkpoint of another mesh, operator or boundary; name "
+                                  "another file or remove it");
+  }
+  return pairs;
+}
+
 template <class Mesh>
 EigenPairs solve(const MeshPart<Mesh>& part, const Discretization& discretization, Index count,
-                 const std::vector<Index>& dirichlet_vertices) {
+                 const std::vector<Index>& dirichlet_vertices,
+                 const std::filesystem::path& checkpoint) {
   const Problem problem(part, discretization, dirichlet_vertices);
   if (count < 1 || count > problem.n_free)
     throw Shared<InvalidOption>(std::to_string(count) + " eigenpairs of " +
@@ -277,10 +298,19 @@ EigenPairs solve(const MeshPart<Mesh>& part, const Discretization& discretizatio
   result.zero_modes = static_cast<Index>(constants.size());
   const Index wanted = count - std::min(count, result.zero_modes);
   if (wanted > 0) {
-    pairs = problem.smallest(wanted, complement, work);
+    pairs = saved_pairs(checkpoint, problem, part.numbers);
+    for (const Pair& pair : pairs) complement.push_back(pair.vector);
+    while (static_cast<Index>(pairs.size()) < wanted) {
+      const Index missing = wanted - static_cast<Index>(pairs.size());
+      for (Pair& pair : problem.smallest(checkpoint.empty() ? missing : std::min(kBatch, missing),
+                                         complement, work)) {
+        complement.push_back(pair.vector);
+        pairs.push_back(std::move(pair));
+      }
+      if (!checkpoint.empty()) save_pairs(checkpoint, part.numbers, pairs);
+    }
     const auto ascending = [](const Pair& a, const Pair& b) { return a.value < b.value; };
     std::sort(pairs.begin(), pairs.end(), ascending);
-    for (const Pair& pair : pairs) complement.push_back(pair.vector);
     // The Krylov space of one vector may miss members of a cluster.
     while (static_cast<Index>(complement.size()) < problem.n_free) {
       std::vector<Pair> next = problem.smallest(1, complement, work);
@@ -314,14 +344,16 @@ EigenPairs solve(const MeshPart<Mesh>& part, const Discretization& discretizatio
 
 EigenPairs distributed_eigenmodes(const MeshPart<PolygonMesh>& part,
                                   const Discretization& discretization, Index count,
-                                  const std::vector<Index>& dirichlet_vertices) {
-  return solve(part, discretization, count, dirichlet_vertices);
+                                  const std::vector<Index>& dirichlet_vertices,
+                                  const std::filesystem::path& checkpoint) {
+  return solve(part, discretization, count, dirichlet_vertices, checkpoint);
 }
 
 EigenPairs distributed_eigenmodes(const MeshPart<PolyhedralMesh>& part,
                                   const Discretization& discretization, Index count,
-                                  const std::vector<Index>& dirichlet_vertices) {
-  return solve(part, discretization, count, dirichlet_vertices);
+                                  const std::vector<Index>& dirichlet_vertices,
+                                  const std::filesystem::path& checkpoint) {
+  return solve(part, discretization, count, dirichlet_vertices, checkpoint);
 }
 
 }  // namespace carat

@@ -1,6 +1,7 @@
 #pragma once
 // Eigenfunctions of the Laplacian over all processes.
 
+#include <filesystem>
 #include <vector>
 
 #include "carat/apps/eigenmodes.h"
@@ -15,13 +16,19 @@ namespace carat {
 /// choose others.
 /// \param discretization      of discretize_part()
 /// \param dirichlet_vertices  numbered as in the part; those of others are ignored
+/// \param checkpoint          a file that all processes see: the pairs found so far are kept in it,
+///                            and a run that ended early goes on from there, also with another
+///                            number of processes; empty: none. The caller removes it.
 /// \return vectors at the part's vertices
-/// \throws InvalidOption, SolverFailure  as eigenmodes(), Shared
+/// \throws InvalidOption, SolverFailure  as eigenmodes(), Shared; the checkpoint of another problem
+/// \throws IoError                       Shared; a checkpoint that cannot be read or written
 EigenPairs distributed_eigenmodes(const MeshPart<PolygonMesh>& part,
                                   const Discretization& discretization, Index count,
-                                  const std::vector<Index>& dirichlet_vertices = {});
+                                  const std::vector<Index>& dirichlet_vertices = {},
+                                  const std::filesystem::path& checkpoint = {});
 EigenPairs distributed_eigenmodes(const MeshPart<PolyhedralMesh>& part,
                                   const Discretization& discretization, Index count,
-                                  const std::vector<Index>& dirichlet_vertices = {});
+                                  const std::vector<Index>& dirichlet_vertices = {},
+                                  const std::filesystem::path& checkpoint = {});
 
 }  // namespace carat
