@@ -47,5 +47,17 @@ TEST(Processes, sums_and_maxima_are_of_all) {
   EXPECT_EQ(largest_of_all(static_cast<double>(rank())), n - 1);
 }
 
+TEST(Processes, counts_beyond_the_indices_are_refused) {
+  EXPECT_NO_THROW(require_countable("entries", 2147483647, 2147483647));
+  try {
+    require_countable("entries", 2147483648, 2147483647);
+    FAIL();
+  } catch (const InvalidOption& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("2147483648 entries"), std::string::npos) << message;
+    EXPECT_NE(message.find("64-bit"), std::string::npos) << message;
+  }
+}
+
 }  // namespace
 }  // namespace carat::test

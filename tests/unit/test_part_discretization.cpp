@@ -158,5 +158,39 @@ TEST(PartDiscretization, what_does_not_fit_is_refused) {
   EXPECT_THROW(discretize_part(part, "ceve"), InvalidOption);
 }
 
+TEST(PartDiscretization, what_is_sent_is_what_crosses_the_cut) {
+  // Halves of a grid: the cut has n interfaces.
+  const auto shares = [](Index n) {
+    const PolygonMesh mesh = quad_grid(n, n);
+    const MeshDivision division = divide(mesh, 2, in_blocks(mesh.n_faces(), 2));
+    PartShare sum;
+    for (Index p = 0; p < 2; ++p) {
+      const auto part = part_of(mesh, division, p);
+      const SparseMatrix stiffness = discretize_part(part, "diamond").stiffness;
+      const PartShare share = share_of(stiffness, part.numbers);
+      std::int64_t entries = 0, of_others = 0;
+      for (Index v = 0; v < stiffness.rows(); ++v)
+        for (SparseMatrix::InnerIterator entry(stiffness, v); entry; ++entry) {
+          entries += entry.value() != 0;
+          of_others += entry.value() != 0 && !part.numbers.own_vertex(v);
+        }
+      EXPECT_EQ(share.entries, entries);
+      EXPECT_EQ(share.sent, of_others);
+      EXPECT_EQ(share.bytes_sent(), 16 * of_others);
+      sum.entries += share.entries;
+      sum.sent += share.sent;
+    }
+    return sum;
+  };
+  const PartShare small = shares(16), large = shares(32);
+  EXPECT_GT(small.sent, 0);
+  EXPECT_NEAR(static_cast<double>(large.sent) / static_cast<double>(small.sent), 2, 0.2);
+  EXPECT_NEAR(static_cast<double>(large.entries) / static_cast<double>(small.entries), 4, 0.4);
+  // Alone, a part sends nothing.
+  const PolygonMesh mesh = quad_grid(4, 4);
+  const auto whole = part_of(mesh, divide(mesh, 1, std::vector<Index>(16, 0)), 0);
+  EXPECT_EQ(share_of(discretize_part(whole, "diamond").stiffness, whole.numbers).sent, 0);
+}
+
 }  // namespace
 }  // namespace carat::test

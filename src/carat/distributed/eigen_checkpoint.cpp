@@ -163,13 +163,15 @@ std::vector<DistributedPair> load_pairs(const fs::path& path, const PartNumbers&
       throw IoError(path.string() + ": cannot be read; all processes need to see this file");
   };
   together([&] {
+    std::vector<Index> in_file(rows.size());
     file.open(path, std::ios::binary);
-    read(layout.vertices() + 4 * std::int64_t{numbers.first_row}, rows.data(), 4 * n_own);
-    for (const PetscInt vertex : rows)
+    read(layout.vertices() + 4 * std::int64_t{numbers.first_row}, in_file.data(), 4 * n_own);
+    for (const Index vertex : in_file)
       if (vertex < 0 || vertex >= numbers.n_vertices)
         throw IoError(path.string() + ": names vertex " + std::to_string(vertex) + " of " +
                       std::to_string(numbers.n_vertices) +
                       "; it is damaged, remove it to start again");
+    rows.assign(in_file.begin(), in_file.end());
   });
   check(AOApplicationToPetsc(numbering, n_own, rows.data()));
   std::vector<DistributedPair> pairs;

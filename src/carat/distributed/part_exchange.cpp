@@ -1,5 +1,7 @@
 #include "carat/distributed/part_exchange.h"
 
+#include "carat/distributed/processes.h"
+
 namespace carat {
 
 PartExchange::PartExchange(const PartNumbers& numbers)
@@ -63,6 +65,7 @@ PetscMatrix PartExchange::sum(const SparseMatrix& of_part) const {
     column_of.push_back(row);
     values.push_back(0);
   }
+  together([&] { require_countable("entries of the matrix", values.size(), PETSC_MAX_INT); });
   check(MatSetPreallocationCOO(matrix, static_cast<PetscCount>(values.size()), row_of.data(),
                                column_of.data()));
   check(MatSetValuesCOO(matrix, values.data(), ADD_VALUES));

@@ -104,6 +104,14 @@ void together(const std::function<void()>& work) {
   throw_shared(kind, message);
 }
 
+void require_countable(const char* what, std::uint64_t n, std::uint64_t limit) {
+  if (n <= limit) return;
+  throw InvalidOption(std::to_string(n) + " " + what + " in one process, at most " +
+                      std::to_string(limit) +
+                      " can be counted by this PETSc's indices; use more processes, or a PETSc "
+                      "that was configured with 64-bit indices");
+}
+
 int run_processes(const std::function<int()>& program,
                   const std::function<int(const std::exception&)>& describe) {
   int rank = 0;

@@ -47,6 +47,11 @@ class Shared final : public Kind, public SharedFailure {
 /// the error of the lowest of these, as Shared. Its message names the process if there are several.
 void together(const std::function<void()>& work);
 
+/// Counts that overflow would be wrong without a word.
+/// \param limit  the largest number that can be counted
+/// \throws InvalidOption  a process has more; says what helps
+void require_countable(const char* what, std::uint64_t n, std::uint64_t limit);
+
 /// Collective. Runs a program and gives its exit code, or that of `describe` for what it throws. An
 /// error that all processes know is described by the first alone; any other ends the job at once.
 int run_processes(const std::function<int()>& program,

@@ -76,4 +76,16 @@ SparseMatrix sparser_part_stiffness(const MeshPart<PolyhedralMesh>& part,
   return sparser_own(part, discretization);
 }
 
+PartShare share_of(const SparseMatrix& of_part, const PartNumbers& numbers) {
+  PartShare share;
+  for (Index v = 0; v < of_part.rows(); ++v) {
+    std::int64_t in_row = 0;
+    for (SparseMatrix::InnerIterator entry(of_part, v); entry; ++entry)
+      if (entry.value() != 0) ++in_row;
+    share.entries += in_row;
+    if (!numbers.own_vertex(v)) share.sent += in_row;
+  }
+  return share;
+}
+
 }  // namespace carat

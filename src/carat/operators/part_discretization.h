@@ -29,4 +29,14 @@ SparseMatrix sparser_part_stiffness(const MeshPart<PolygonMesh>& part,
 SparseMatrix sparser_part_stiffness(const MeshPart<PolyhedralMesh>& part,
                                     const Discretization& discretization);
 
+/// What a part brings to a matrix, and how much of it belongs to rows of other parts' vertices: all
+/// that an assembly over several processes has to send.
+struct PartShare {
+  std::int64_t entries = 0, sent = 0;
+  /// As coordinates: two indices and a value.
+  std::int64_t bytes_sent() const { return 16 * sent; }
+};
+/// \param of_part  over the part's vertices; its zeros are not counted
+PartShare share_of(const SparseMatrix& of_part, const PartNumbers& numbers);
+
 }  // namespace carat
