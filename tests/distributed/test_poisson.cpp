@@ -44,21 +44,35 @@ Vector wave(const Mesh& mesh) {
   return f;
 }
 
+bool has_products(const PolygonMesh&, const std::string& name) {
+  return surface_operator(name).options.products;
+}
+bool has_products(const PolyhedralMesh&, const std::string& name) {
+  return volume_operator(name).options.products;
+}
+
 template <class Mesh>
 void check(const Mesh& mesh, const MeshPart<Mesh>& part, const std::string& name,
-           const DiscretizationOptions& options, const BoundaryConditions& conditions,
+           DiscretizationOptions options, const BoundaryConditions& conditions,
            const Vector& load) {
   const Discretization whole = discretize(mesh, name, options);
   const PoissonSolution expected =
       Poisson(mesh, whole, conditions, {.kind = SolverKind::Cholesky}).solve(load);
-  const Discretization own = discretize_part(part, name, options);
-  const DistributedPoisson poisson(part, own, select(conditions, part.numbers));
-  const PoissonSolution solution = poisson.solve(select(load, part.numbers));
-  EXPECT_LT(difference(solution.values, expected.values, part.numbers), 1e-9);
-  EXPECT_EQ(solution.floating_components, expected.floating_components);
-  EXPECT_NEAR(solution.imbalance, expected.imbalance, 1e-12);
-  EXPECT_LT(solution.solve.residual, 1e-10);
-  EXPECT_GT(solution.solve.iterations, 0);
+  for (const OperatorForm form : {OperatorForm::Matrices, OperatorForm::Products}) {
+    const bool products = form == OperatorForm::Products;
+    if (products && !has_products(mesh, name)) continue;
+    SCOPED_TRACE(products ? "products" : "matrices");
+    options.form = form;
+    const Discretization own = discretize_part(part, name, options);
+    const DistributedPoisson poisson(part, own, select(conditions, part.numbers));
+    const PoissonSolution solution = poisson.solve(select(load, part.numbers));
+    EXPECT_LT(difference(solution.values, expected.values, part.numbers), 1e-9);
+    EXPECT_EQ(solution.floating_components, expected.floating_components);
+    EXPECT_NEAR(solution.imbalance, expected.imbalance, 1e-12);
+    EXPECT_LT(solution.solve.residual, 1e-10);
+    EXPECT_GT(solution.solve.iterations, 0);
+    EXPECT_TRUE(products || solution.solve.method.find("matrix-free") == std::string::npos);
+  }
 }
 
 template <class Mesh>
@@ -90,6 +104,22 @@ TEST(DistributedPoisson, volumes_as_in_one_process) {
     SCOPED_TRACE(family);
     check_all(generate_volume(family, {.level = 1, .jitter = 0.2}));
   }
+}
+
+TEST(DistributedPoisson, elements_of_many_vertices_need_no_matrix) {
+  const PolyhedralMesh truncated = generate_volume("cube-truncated", {.level = 1});
+  const auto part = own_block(truncated);
+  EXPECT_EQ(distributed_poisson_form(part, "diamond"), OperatorForm::Products);
+  EXPECT_EQ(distributed_poisson_form(part, "bunge"), OperatorForm::Matrices);
+  DiscretizationOptions options;
+  options.form = OperatorForm::Products;
+  const DistributedPoisson poisson(part, discretize_part(part, "diamond", options));
+  Vector load = Vector::Zero(part.mesh.n_vertices());
+  for (Index v = 0; v < load.size(); ++v)
+    load[v] = std::cos(3.141592653589793 * part.mesh.point(v).x());
+  EXPECT_EQ(poisson.solve(load).solve.method.find("matrix-free PETSc"), 0u);
+  const PolygonMesh triangles = generate_mesh("plane-triangles", {.level = 1});
+  EXPECT_EQ(distributed_poisson_form(own_block(triangles), "diamond"), OperatorForm::Matrices);
 }
 
 TEST(DistributedPoisson, any_parts_components_and_loose_vertices) {

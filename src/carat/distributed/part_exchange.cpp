@@ -23,17 +23,28 @@ PetscVector PartExchange::vector() const {
   return vector;
 }
 
-Vector PartExchange::to_part(Vec values) const {
+void PartExchange::to_part(Vec values, Vector& here) const {
   check(VecScatterBegin(scatter_, values, here_, INSERT_VALUES, SCATTER_FORWARD));
   check(VecScatterEnd(scatter_, values, here_, INSERT_VALUES, SCATTER_FORWARD));
-  return OwnRows(here_).values();
+  here = OwnRows(here_).values();
+}
+
+Vector PartExchange::to_part(Vec values) const {
+  Vector here;
+  to_part(values, here);
+  return here;
+}
+
+void PartExchange::sum(const Vector& of_part, Vec into) const {
+  OwnRows(here_).values() = of_part;
+  check(VecSet(into, 0));
+  check(VecScatterBegin(scatter_, here_, into, ADD_VALUES, SCATTER_REVERSE));
+  check(VecScatterEnd(scatter_, here_, into, ADD_VALUES, SCATTER_REVERSE));
 }
 
 PetscVector PartExchange::sum(const Vector& of_part) const {
-  OwnRows(here_).values() = of_part;
   PetscVector result = vector();
-  check(VecScatterBegin(scatter_, here_, result, ADD_VALUES, SCATTER_REVERSE));
-  check(VecScatterEnd(scatter_, here_, result, ADD_VALUES, SCATTER_REVERSE));
+  sum(of_part, result);
   return result;
 }
 

@@ -22,8 +22,10 @@ class PartExchange {
   PetscVector vector() const;
   /// Collective. The values at the part's vertices.
   Vector to_part(Vec values) const;
+  void to_part(Vec values, Vector& here) const;
   /// Collective. The sum of what all parts bring.
   PetscVector sum(const Vector& of_part) const;
+  void sum(const Vector& of_part, Vec into) const;
   /// Collective. The sum of what all parts bring, a matrix over the part's vertices from each.
   PetscMatrix sum(const SparseMatrix& of_part) const;
 

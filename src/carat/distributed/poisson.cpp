@@ -4,9 +4,11 @@
 #include <string>
 #include <type_traits>
 
+#include "carat/distributed/part_product.h"
 #include "carat/distributed/processes.h"
 #include "carat/distributed/spd_iteration.h"
 #include "carat/operators/common.h"
+#include "carat/solve/matrix_operator.h"
 
 namespace carat {
 namespace {
@@ -16,6 +18,13 @@ constexpr double kImbalanceLimit = 0.1;
 
 template <class Mesh>
 constexpr int kDimension = std::is_same_v<Mesh, PolygonMesh> ? 2 : 3;
+
+std::shared_ptr<const SymmetricOperator> as_operator(
+    const std::shared_ptr<const SymmetricOperator>& product,
+    std::shared_ptr<const SparseMatrix> matrix) {
+  if (product) return product;
+  return std::make_shared<MatrixOperator>(std::move(matrix), 1);
+}
 
 /// The conditions that are this part's to give.
 BoundaryConditions own_conditions(const BoundaryConditions& all, const PartNumbers& numbers) {
@@ -69,7 +78,7 @@ struct DistributedPoisson::Impl {
 
   PartExchange exchange;
   std::size_t n_components;
-  SparseMatrix mass;  // the part's
+  std::shared_ptr<const SymmetricOperator> mass;  // the part's
   std::vector<Index> part_components;
   // Of the own rows:
   std::vector<Index> components;
@@ -103,29 +112,38 @@ void DistributedPoisson::set_up(const MeshPart<Mesh>& part, const Discretization
   BoundaryConditions own;
   BoundaryIntegrals boundary;
   SparseMatrix sparser;
-  SparseMatrix stiffness;
+  std::shared_ptr<const SymmetricOperator> operator_of_part, mass;
   together([&] {
     require_vertex_unknowns(d, "Poisson");
-    if (d.stiffness.rows() != part.mesh.n_vertices())
-      throw InvalidOption("the discretization has " + std::to_string(d.stiffness.rows()) +
+    if (d.n_vertices() != part.mesh.n_vertices())
+      throw InvalidOption("the discretization has " + std::to_string(d.n_vertices()) +
                           " vertices, the part " + std::to_string(part.mesh.n_vertices()));
     own = own_conditions(conditions, numbers);
     boundary = integrate_boundary(part.mesh, own);
     sparser = sparser_part_stiffness(part, d);
     if (sparser.rows() > 0) sparser = sparser + boundary.robin;
-    stiffness = d.stiffness + boundary.robin;
+    operator_of_part = as_operator(d.stiffness_product, std::shared_ptr<const SparseMatrix>(
+                                                            std::shared_ptr<void>(), &d.stiffness));
+    mass = as_operator(d.mass_product, std::make_shared<SparseMatrix>(d.mass));
+    if (boundary.robin.nonZeros() > 0) operator_of_part = operator_of_part->plus(boundary.robin);
   });
   impl_ = std::make_unique<Impl>(numbers);
   Impl& it = *impl_;
-  it.mass = d.mass;
+  it.mass = std::move(mass);
   const Index first = numbers.first_row, n_own = it.exchange.n_own();
-  PetscMatrix system = it.exchange.sum(stiffness);
+  const bool assembled = operator_of_part->assembled();
+  PetscMatrix system = assembled ? it.exchange.sum(*operator_of_part->matrix())
+                                 : product_of_all(it.exchange, operator_of_part);
   PetscMatrix like;
   if (largest_of_all(static_cast<double>(sparser.rows())) > 0) like = it.exchange.sum(sparser);
-  check(MatNorm(system, NORM_INFINITY, &it.norm));
-
   PetscVector diagonal = it.exchange.vector();
-  check(MatGetDiagonal(system, diagonal));
+  if (assembled) {
+    check(MatNorm(system, NORM_INFINITY, &it.norm));
+    check(MatGetDiagonal(system, diagonal));
+  } else {
+    check(VecNorm(it.exchange.sum(operator_of_part->row_norms()), NORM_INFINITY, &it.norm));
+    it.exchange.sum(operator_of_part->diagonal(), diagonal);
+  }
   const Vector at_part = it.exchange.to_part(diagonal);
   it.components.assign(static_cast<std::size_t>(n_own), -1);
   for (Index v = 0; v < part.mesh.n_vertices(); ++v) {
@@ -183,14 +201,57 @@ void DistributedPoisson::set_up(const MeshPart<Mesh>& part, const Discretization
   PetscReal scale = 0;
   check(VecMax(diagonal, nullptr, &scale));
   const PetscInt n_held = static_cast<PetscInt>(held_rows.size());
-  check(MatZeroRowsColumns(system, n_held, held_rows.data(), scale, values, it.lift));
-  if (like) check(MatZeroRowsColumns(like, n_held, held_rows.data(), scale, nullptr, nullptr));
+  const auto hold = [held_rows, n_held, scale](Mat matrix, Vec x, Vec b) {
+    check(MatZeroRowsColumns(matrix, n_held, held_rows.data(), scale, x, b));
+  };
+  if (assembled) {
+    hold(system, values, it.lift);
+  } else {
+    check(MatMult(system, values, it.lift));
+    check(VecScale(it.lift, -1));
+    hold_rows(system, it.held, scale);
+  }
+  if (like) hold(like, nullptr, nullptr);
   {
     const OwnRows lift(it.lift);
     for (Index row = 0; row < n_own; ++row)
       if (it.held[static_cast<std::size_t>(row)]) lift.values()[row] = 0;
   }
-  it.solver = std::make_unique<SpdIteration>(std::move(system), std::move(like), kDimension<Mesh>);
+  std::function<PetscMatrix()> assemble;
+  if (!assembled)
+    assemble = [&it, hold, stiffness = operator_of_part] {
+      std::shared_ptr<const SparseMatrix> of_part;
+      together([&] { of_part = stiffness->matrix(); });
+      PetscMatrix matrix = it.exchange.sum(*of_part);
+      hold(matrix, nullptr, nullptr);
+      return matrix;
+    };
+  it.solver = std::make_unique<SpdIteration>(std::move(system), std::move(like), kDimension<Mesh>,
+                                             std::move(assemble));
+}
+
+namespace {
+
+/// That of all processes whose parts are like most.
+template <class Mesh>
+OperatorForm form_of_all(const MeshPart<Mesh>& part, const std::string& name) {
+  OperatorForm own{};
+  // As on a mesh that is large enough for an iteration.
+  together([&] { own = poisson_form(part.mesh, name, {.kind = SolverKind::Multigrid}); });
+  const auto vote =
+      own == OperatorForm::Products ? part.mesh.n_vertices() : -part.mesh.n_vertices();
+  return sum_of_all(std::int64_t{vote}) > 0 ? OperatorForm::Products : OperatorForm::Matrices;
+}
+
+}  // namespace
+
+OperatorForm distributed_poisson_form(const MeshPart<PolygonMesh>& part, const std::string& name) {
+  return form_of_all(part, name);
+}
+
+OperatorForm distributed_poisson_form(const MeshPart<PolyhedralMesh>& part,
+                                      const std::string& name) {
+  return form_of_all(part, name);
 }
 
 DistributedPoisson::DistributedPoisson(const MeshPart<PolygonMesh>& part,
@@ -216,7 +277,7 @@ PoissonSolution DistributedPoisson::solve(const Vector& f) const {
     if (f.size() != impl_->exchange.n_here())
       throw InvalidOption(std::to_string(f.size()) + " values for " +
                           std::to_string(impl_->exchange.n_here()) + " vertices");
-    load = impl_->mass * f;
+    load = *impl_->mass * f;
   });
   return solve_integrated(load);
 }

@@ -31,8 +31,10 @@ void set_spd_defaults(KSP solver, int dimension) {
   check(PCSetType(preconditioner, PCGAMG));
 }
 
-SpdIteration::SpdIteration(PetscMatrix system, PetscMatrix like, int dimension)
-    : system_(std::move(system)), like_(std::move(like)) {
+SpdIteration::SpdIteration(PetscMatrix system, PetscMatrix like, int dimension,
+                           std::function<PetscMatrix()> assemble)
+    : system_(std::move(system)), like_(std::move(like)), assemble_(std::move(assemble)) {
+  if (!like_ && assemble_) system_ = assemble_();
   check(KSPCreate(PETSC_COMM_WORLD, solver_.out()));
   Mat const preconditioned = like_ ? like_ : system_;
   MatNullSpace constants = nullptr;
@@ -52,7 +54,10 @@ std::string SpdIteration::method() const {
   check(KSPGetType(solver_, &iteration));
   check(KSPGetPC(solver_, &preconditioner));
   check(PCGetType(preconditioner, &type));
-  return std::string("PETSc ") + iteration + " with " + type +
+  PetscBool multiplies = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(static_cast<Mat>(system_)), MATSHELL,
+                               &multiplies));
+  return std::string(multiplies ? "matrix-free PETSc " : "PETSc ") + iteration + " with " + type +
          (like_ ? " of the sparser stiffness" : "");
 }
 
@@ -76,6 +81,7 @@ PetscVector SpdIteration::solve(Vec right_hand_side, SolveReport& report) {
   };
   bool solved = attempt();
   if (!solved && like_) {
+    if (assemble_) system_ = assemble_();
     like_ = {};
     check(KSPSetOperators(solver_, system_, system_));
     solved = attempt();

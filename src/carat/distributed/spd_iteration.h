@@ -1,6 +1,7 @@
 #pragma once
 // Symmetric positive definite systems over all processes. Seen by this folder's sources alone.
 
+#include <functional>
 #include <string>
 
 #include "carat/distributed/part_exchange.h"
@@ -15,7 +16,9 @@ class SpdIteration {
  public:
   /// Collective. \param like  spectrally equivalent and sparser; null: the system itself
   /// \param dimension  of the mesh
-  SpdIteration(PetscMatrix system, PetscMatrix like, int dimension);
+  /// \param assemble   makes the matrix of a system that only multiplies; collective
+  SpdIteration(PetscMatrix system, PetscMatrix like, int dimension,
+               std::function<PetscMatrix()> assemble = {});
 
   /// Collective. \throws SolverFailure  Shared: the residual of the solution is above 1e-10
   PetscVector solve(Vec right_hand_side, SolveReport& report);
@@ -24,6 +27,7 @@ class SpdIteration {
 
  private:
   PetscMatrix system_, like_;
+  std::function<PetscMatrix()> assemble_;
   PetscSolver solver_;
 };
 
