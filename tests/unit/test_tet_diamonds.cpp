@@ -102,7 +102,7 @@ TEST(TetDiamonds, topology_names_what_is_opposite_and_across) {
   const VolumeIncidence incidence{mesh.face_mesh().faces(), mesh.cells(),
                                   mesh.face_cells(),        mesh.cell_vertices(),
                                   mesh.corner_cells(),      mesh.vertex_cell_corners()};
-  const TetTopology tets = tet_topology(incidence, 1);
+  const TetTopology tets = tet_topology(incidence, {}, 1);
   EXPECT_EQ(tets.vertices[0], (std::array<Index, 8>{0, 1, 2, 3, 4, -1, -1, -1}));
   EXPECT_EQ(tets.vertices[1], (std::array<Index, 8>{1, 2, 3, 4, -1, -1, -1, 0}));
   // Vertex 3 sees 0, 1, 2 counter-clockwise; 4 sees 1, 2, 3 so as well.

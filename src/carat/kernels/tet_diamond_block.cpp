@@ -9,7 +9,8 @@ namespace {
 constexpr double kThin = 1e-11;
 
 struct alignas(64) Lanes {
-  double x[8][3][kBlockTets], sign[kBlockTets], boundary[4][kBlockTets];
+  double x[8][3][kBlockTets], sign[kBlockTets];
+  double boundary[4][kBlockTets];  // of faces: 1, inner ones 0, those that are left out -1
   double pair[6][kBlockTets], across[4][kBlockTets], face_mass[4][kBlockTets];
   double cell_mass[kBlockTets], volume[4][kBlockTets], thick[kBlockTets];
   double vertex_mass[4][kBlockTets];
@@ -89,7 +90,8 @@ template <int K, bool kHalves, bool kMomentExact>
     size2 = ac2 > size2 ? ac2 : size2;
     size2 = bc2 > size2 ? bc2 : size2;
     size2 = d2 > size2 ? d2 : size2;
-    const bool sound = (det > 0) & (det * det > limit2 * (size2 * size2 * size2));
+    const bool sound =
+        (det > 0) & (det * det > limit2 * (size2 * size2 * size2)) & (lanes.boundary[K][l] >= 0);
     // |D| |g|^2 with g = (s du_ab + t du_ac + w du_tip) / (3 det), |D| = det / 2 for all three
     const double scale = sound ? 1 / (18 * det) : 0.0;
     const double volume = sound ? det / 6 : 0.0;
@@ -231,7 +233,8 @@ void load(const double* points, const TetDiamondInput* input, Lanes& lanes) {
       const double* const x = points + 3 * static_cast<std::ptrdiff_t>(v);
       for (int k = 0; k < 3; ++k) lanes.x[i][k][l] = x[k];
     }
-    for (int k = 0; k < 4; ++k) lanes.boundary[k][l] = vertices[4 + k] < 0 ? 1.0 : 0.0;
+    for (int k = 0; k < 4; ++k)
+      lanes.boundary[k][l] = (input[l].left_out >> k & 1U) ? -1.0 : vertices[4 + k] < 0 ? 1.0 : 0.0;
     lanes.sign[l] = input[l].sign;
   }
 }

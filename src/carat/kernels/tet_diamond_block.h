@@ -31,6 +31,7 @@ struct TetHalves {
 struct TetDiamondInput {
   const Index* vertices;  ///< four ascending, then those across their faces, -1 at the boundary
   double sign;            ///< + if vertex 3 sees 0, 1, 2 counter-clockwise
+  unsigned left_out = 0;  ///< bit k: the diamonds of face k add nothing
 };
 
 /// \param points   as in Points::data()  [length]

@@ -38,12 +38,14 @@ struct Sums {
 
 }  // namespace
 
-TetTopology tet_topology(const VolumeIncidence& mesh, int threads) {
+TetTopology tet_topology(const VolumeIncidence& mesh, const std::vector<bool>& own_faces,
+                         int threads) {
   const Index n = mesh.cells.n_rows();
   TetTopology tets;
   tets.vertices.resize(static_cast<std::size_t>(n));
   tets.measured_faces.resize(static_cast<std::size_t>(n));
   tets.signs.resize(static_cast<std::size_t>(n));
+  tets.left_out.resize(own_faces.empty() ? 0 : static_cast<std::size_t>(n));
   parallel_blocks(n, threads, [&](int, Index begin, Index end) {
     for (Index c = begin; c < end; ++c) {
       std::array<Index, 8>& vertices = tets.vertices[c];
@@ -52,6 +54,7 @@ TetTopology tet_topology(const VolumeIncidence& mesh, int threads) {
       sort_four(vertices.data());
       const std::uint32_t total = sum(own);
       std::size_t opposite = 0;
+      unsigned left_out = 0;
       for (std::size_t k = 4; k-- > 0;) {  // the first face comes last: the sign is taken from it
         const Index f = mesh.cells.indices[mesh.cells.begin(c) + static_cast<Index>(k)];
         const std::uint32_t of_face = sum(mesh.faces.row(f));
@@ -63,7 +66,10 @@ TetTopology tet_topology(const VolumeIncidence& mesh, int threads) {
         vertices[4 + opposite] =
             other < 0 ? -1 : static_cast<Index>(sum(mesh.cell_vertices.row(other)) - of_face);
         tets.measured_faces[c][opposite] = sides.below == c || sides.below < 0 ? f : -1;
+        if (!own_faces.empty() && !own_faces[static_cast<std::size_t>(f)])
+          left_out |= 1U << opposite;
       }
+      if (!own_faces.empty()) tets.left_out[c] = static_cast<unsigned char>(left_out);
       const Index f = mesh.cells.indices[mesh.cells.begin(c)];
       const std::span<const Index> face = mesh.faces.row(f);
       const bool ascending = (face[0] < face[1]) == ((face[1] < face[2]) == (face[0] < face[2]));
@@ -98,7 +104,8 @@ bool compute_tet_diamonds(const Points& points, const VolumeIncidence& mesh,
       for (Index l = 0; l < kBlockTets; ++l) {
         // A block that is not full repeats its last cell.
         const Index c = std::min(first + l, end - 1);
-        input[l] = {tets.vertices[c].data(), static_cast<double>(tets.signs[c])};
+        input[l] = {tets.vertices[c].data(), static_cast<double>(tets.signs[c]),
+                    tets.left_out.empty() ? 0U : tets.left_out[c]};
         out[l] = &terms.tets[c];
         if (halves) vertex_masses[l] = terms.vertex_masses[c].data();
       }

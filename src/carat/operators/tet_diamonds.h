@@ -22,11 +22,14 @@ struct TetTopology {
   /// Faces in the order of the vertices. The lower cell of a face gives its measures, at the
   /// boundary the only one: elsewhere -1.
   Array<std::array<Index, 4>> measured_faces;
-  Array<signed char> signs;  ///< + if vertex 3 sees 0, 1, 2 counter-clockwise
+  Array<signed char> signs;       ///< + if vertex 3 sees 0, 1, 2 counter-clockwise
+  Array<unsigned char> left_out;  ///< bit k: face k is another part's; empty: none is
 };
 
-/// \param mesh  all cells have 4 faces and 4 vertices
-TetTopology tet_topology(const VolumeIncidence& mesh, int threads);
+/// \param mesh       all cells have 4 faces and 4 vertices
+/// \param own_faces  the faces that are not left out; empty: all
+TetTopology tet_topology(const VolumeIncidence& mesh, const std::vector<bool>& own_faces,
+                         int threads);
 
 /// Patterns as those of cell_rings, without its places.
 VolumeDiamondPatterns diamond_patterns(const VolumeIncidence& mesh, const TetTopology& tets,

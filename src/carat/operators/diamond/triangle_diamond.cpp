@@ -20,6 +20,7 @@ class TriangleDiamondAssembly final : public Assembly {
   TriangleDiamondAssembly(const char* name, const PolygonMesh& mesh,
                           const DiscretizationOptions& options)
       : mesh_(mesh), options_(options), incidence_(incidence(mesh_, options.threads)) {
+    check_own_interfaces(options_, mesh_.n_edges());
     result_.name = name;
     TriangleDiamondPatterns made = triangle_diamond_patterns(incidence_, options_.threads);
     result_.stiffness = std::move(made.patterns.stiffness);
@@ -41,8 +42,13 @@ class TriangleDiamondAssembly final : public Assembly {
     Index v1, v2, left, right;  // vertices, right is -1 at the boundary
   };
   Diamond diamond(Index e) const;
+  bool is_left_out(Index e) const {
+    return !options_.own_interfaces.empty() &&
+           !options_.own_interfaces[static_cast<std::size_t>(e)];
+  }
   void compute_terms(const Points& points);
   void gather(const Points& points, Index first, Index size, Block& block) const;
+  void leave_out(Index first, Index size, Block& block) const;
   void set_halves(Index e, double scale, const Block& block, const TriangleCrossingBlock& crossing,
                   Index lane);
   Array<double> coefficients(const Points& points) const;
@@ -87,6 +93,12 @@ void TriangleDiamondAssembly::gather(const Points& points, Index first, Index si
     for (int i = 0; i < 4; ++i)
       for (int c = 0; c < 3; ++c) block.x[i][c][k] = at[i][c];
   }
+}
+
+/// Diamonds of other parts add nothing.
+void TriangleDiamondAssembly::leave_out(Index first, Index size, Block& block) const {
+  for (Index k = 0; k < size; ++k)
+    if (is_left_out(first + k)) block.alpha[k] = block.beta[k] = block.gamma[k] = block.area[k] = 0;
 }
 
 /// With u_l = (u1 + u2 + o_l) / 3 the jump is c . (u1, u2, o_l, o_r); masses of its four vertices.
@@ -146,9 +158,10 @@ void TriangleDiamondAssembly::compute_terms(const Points& points) {
         triangle_diamond_block(block, options_.eps_rel, crossing);
       else
         triangle_diamond_block(block, options_.eps_rel);
+      if (!options_.own_interfaces.empty()) leave_out(first, size, block);
       for (Index k = 0; k < size; ++k) {
         const Index e = first + k;
-        const double scale = coefficient_.empty() ? 1.0 : coefficient_[e];
+        const double scale = coefficient_.empty() || is_left_out(e) ? 1.0 : coefficient_[e];
         terms_.values[e] = -scale * block.alpha[k];
         terms_.values[n_edges + e] = -scale * block.gamma[k] / 9;
         if (halves_) {
@@ -160,7 +173,7 @@ void TriangleDiamondAssembly::compute_terms(const Points& points) {
           terms_.around[e] = {scale * block.beta[k] / 3, share * block.area[k]};
         }
         result_.sample_measure[e] = block.area[k];
-        excluded |= !(block.area[k] > 0);
+        excluded |= !(block.area[k] > 0) && !is_left_out(e);
         thin |= block.thin[k] > 0;
       }
     }
@@ -176,6 +189,7 @@ void TriangleDiamondAssembly::compute_terms(const Points& points) {
 Array<double> TriangleDiamondAssembly::coefficients(const Points& points) const {
   Array<double> result(static_cast<std::size_t>(mesh_.n_edges()));
   for (Index e = 0; e < mesh_.n_edges(); ++e) {
+    if (is_left_out(e)) continue;
     const Diamond d = diamond(e);
     const Vec3 x1 = points.row(d.v1).transpose();
     const Vec3 hinge = Vec3(points.row(d.v2).transpose()) - x1;
@@ -209,7 +223,7 @@ void TriangleDiamondAssembly::report(const Points& points) {
   report_virtual_vertices({}, {}, std::move(degenerate), result_.diagnostics);
   if (any_excluded_)
     for (Index e = 0; e < mesh_.n_edges(); ++e)
-      if (!(result_.sample_measure[e] > 0)) excluded.push_back(e);
+      if (!(result_.sample_measure[e] > 0) && !is_left_out(e)) excluded.push_back(e);
   report_degenerate(
       std::move(excluded), options_, "diamond",
       [&](Index e) {
@@ -231,7 +245,7 @@ void TriangleDiamondAssembly::reassemble(const Points& points) {
 
 std::unique_ptr<Assembly> make_triangle_diamond(const char* name, const PolygonMesh& mesh,
                                                 const DiscretizationOptions& options) {
-  if (mesh.n_faces() == 0 || !options.own_interfaces.empty()) return nullptr;
+  if (mesh.n_faces() == 0) return nullptr;
   // No face has fewer than three corners.
   if (mesh.n_corners() != 3 * std::int64_t{mesh.n_faces()} ||
       !has_triangle_diamonds(TriangleDiamondAssembly::incidence(mesh, options.threads),

@@ -102,10 +102,10 @@ VolumeDiamondAssembly::VolumeDiamondAssembly(const char* name, const PolyhedralM
   result_.name = name;
   const bool products = options_.form == OperatorForm::Products;
   tets_ = !products && !options_.coefficient && options_.cell_coefficient.size() == 0 &&
-          options_.own_interfaces.empty() && mesh_.n_cells() > 0 && all_tetrahedra(incidence_);
+          mesh_.n_cells() > 0 && all_tetrahedra(incidence_);
   VolumeDiamondPatterns patterns;
   if (tets_) {
-    tet_topology_ = tet_topology(incidence_, options_.threads);
+    tet_topology_ = tet_topology(incidence_, options_.own_interfaces, options_.threads);
     patterns = diamond_patterns(incidence_, tet_topology_, options_.threads);
   } else {
     if (products) {
