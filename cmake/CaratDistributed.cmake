@@ -11,8 +11,11 @@ if(Scotch_FOUND)
   set(CARAT_HAS_PARTITION ON)
   add_library(carat_partition STATIC src/carat/distributed/partition.cpp)
   add_library(carat::partition ALIAS carat_partition)
+  target_sources(carat_partition PUBLIC FILE_SET HEADERS BASE_DIRS src
+                 FILES src/carat/distributed/partition.h)
   target_link_libraries(carat_partition PUBLIC carat_core PRIVATE Scotch::Scotch)
-  set_target_properties(carat_partition PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(carat_partition PROPERTIES EXPORT_NAME partition
+                                                   POSITION_INDEPENDENT_CODE ON)
   carat_warnings(carat_partition)
 else()
   message(STATUS "Scotch not found: no carat::partition (Debian: libscotch-dev)")
@@ -24,7 +27,7 @@ find_package(PkgConfig QUIET)
 if(MPI_FOUND AND PkgConfig_FOUND)
   pkg_check_modules(PETSC QUIET IMPORTED_TARGET petsc>=3.18 slepc>=3.18)
 endif()
-if(PETSC_FOUND)
+if(PETSC_FOUND AND Scotch_FOUND AND CARAT_BUILD_IO)
   set(CARAT_HAS_DISTRIBUTED ON)
   # The flags of Debian's own build are not for ours.
   set_property(TARGET PkgConfig::PETSC PROPERTY INTERFACE_COMPILE_OPTIONS)
@@ -32,9 +35,16 @@ if(PETSC_FOUND)
   list(FILTER distributed_sources EXCLUDE REGEX "/partition.cpp$")
   add_library(carat_distributed STATIC ${distributed_sources})
   add_library(carat::distributed ALIAS carat_distributed)
-  target_link_libraries(carat_distributed PUBLIC carat_core PRIVATE PkgConfig::PETSC MPI::MPI_CXX)
+  # The other headers show PETSc or MPI.
+  target_sources(carat_distributed PUBLIC FILE_SET HEADERS BASE_DIRS src
+                 FILES src/carat/distributed/eigenmodes.h src/carat/distributed/heat_geodesics.h
+                       src/carat/distributed/part_data.h src/carat/distributed/poisson.h
+                       src/carat/distributed/processes.h)
+  target_link_libraries(carat_distributed PUBLIC carat_core carat_io carat_partition
+                        PRIVATE PkgConfig::PETSC MPI::MPI_CXX)
+  set_target_properties(carat_distributed PROPERTIES EXPORT_NAME distributed)
   carat_warnings(carat_distributed)
 else()
-  message(STATUS "PETSc, SLEPc or MPI not found: no carat::distributed (Debian: petsc-dev, "
-                 "slepc-dev, libopenmpi-dev)")
+  message(STATUS "no carat::distributed: it needs CARAT_BUILD_IO, Scotch, PETSc, SLEPc and MPI "
+                 "(Debian: libscotch-dev, petsc-dev, slepc-dev, libopenmpi-dev)")
 endif()

@@ -1,4 +1,4 @@
-# find_package(carat [COMPONENTS core io]) for installed trees, which can be moved as a whole.
+# find_package(carat [COMPONENTS core io distributed]) for installed trees, which can be moved as a whole.
 include(CMakePackageConfigHelpers)
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/carat)
 list(JOIN vtk_components " " CARAT_VTK_COMPONENTS)
@@ -18,5 +18,11 @@ install(EXPORT caratCoreTargets NAMESPACE carat:: DESTINATION ${config_dir})
 if(CARAT_BUILD_IO)
   install(TARGETS carat_io carat_viewer EXPORT caratIoTargets FILE_SET HEADERS)
   install(EXPORT caratIoTargets NAMESPACE carat:: DESTINATION ${config_dir})
+endif()
+if(CARAT_HAS_DISTRIBUTED)
+  install(TARGETS carat_distributed carat_partition EXPORT caratDistributedTargets
+          FILE_SET HEADERS)
+  install(EXPORT caratDistributedTargets NAMESPACE carat:: DESTINATION ${config_dir})
+  install(FILES cmake/FindScotch.cmake DESTINATION ${config_dir})
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
