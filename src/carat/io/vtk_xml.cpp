@@ -9,6 +9,7 @@
 #include <vtkPointSet.h>
 #include <vtkPoints.h>
 #include <vtkTypeInt32Array.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkXMLReader.h>
 #include <vtkXMLWriter.h>
 
@@ -18,6 +19,7 @@
 #include <utility>
 
 #include "carat/base/error.h"
+#include "carat/io/parallel_vtk.h"
 #include "carat/io/vtk_session.h"
 
 namespace carat::detail {
@@ -74,26 +76,38 @@ vtkSmartPointer<ArrayType> share(const T* values, std::size_t n, int components 
   return array;
 }
 
-/// A name that VTK can write: its writers do not escape what means something in XML.
-std::string xml_name(std::string name, vtkDataSetAttributes* attributes) {
-  for (char& c : name)
-    if (std::string_view("<>&\"'").find(c) != std::string_view::npos ||
-        static_cast<unsigned char>(c) < ' ')
-      c = '_';
-  while (attributes->HasArray(name.c_str()) != 0) name += '_';
-  return name;
+/// VTK takes elements of other parts for such only by bytes.
+vtkSmartPointer<vtkDataArray> to_array(const Field& field) {
+  if (field.name != kGhostField)
+    return share<vtkDoubleArray>(field.values.data(), field.values.size(), field.components);
+  auto bytes = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  bytes->SetNumberOfComponents(field.components);
+  bytes->SetNumberOfTuples(field.n_rows());
+  std::transform(field.values.begin(), field.values.end(), bytes->GetPointer(0),
+                 [](double value) { return static_cast<unsigned char>(value); });
+  return bytes;
 }
 
 void share_fields(vtkDataSetAttributes* attributes, const std::vector<Field>& fields) {
+  std::vector<std::string> names;
   for (const Field& field : fields) {
-    const auto array =
-        share<vtkDoubleArray>(field.values.data(), field.values.size(), field.components);
-    array->SetName(xml_name(field.name, attributes).c_str());
+    names.push_back(vtk_field_name(field.name, names));
+    const vtkSmartPointer<vtkDataArray> array = to_array(field);
+    array->SetName(names.back().c_str());
     attributes->AddArray(array);
   }
 }
 
 }  // namespace
+
+std::string vtk_field_name(std::string name, const std::vector<std::string>& taken) {
+  for (char& c : name)
+    if (std::string_view("<>&\"'").find(c) != std::string_view::npos ||
+        static_cast<unsigned char>(c) < ' ')
+      c = '_';
+  while (std::find(taken.begin(), taken.end(), name) != taken.end()) name += '_';
+  return name;
+}
 
 void run_vtk_reader(vtkXMLReader* reader, const FileContent& file) {
   // The readers of VTK 9.1 look up a name that is not there when they word the error about an

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -66,6 +67,10 @@ void for_each_cell(
 
 /// The mesh of these cells with the data set's points and attributes.
 MeshData to_mesh(vtkPointSet* data, VtkCells& cells);
+
+/// A field's name as VTK can write it: its writers do not escape what means something in XML.
+/// \param taken  names of the fields before it
+std::string vtk_field_name(std::string name, const std::vector<std::string>& taken);
 
 /// Sets points and attributes. The arrays are shared, not copied: they must outlive the data set.
 void share_points_and_fields(vtkPointSet* data, const Points& points,
