@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "carat/base/types.h"
+#include "carat/io/mesh_piece.h"
 
 namespace carat {
 
@@ -27,6 +28,16 @@ struct FieldShape {
 void write_parallel_index(const std::filesystem::path& path, const std::vector<std::string>& pieces,
                           const std::vector<FieldShape>& vertex_fields,
                           const std::vector<FieldShape>& element_fields, int n_ghost_layers = 0);
+
+/// The files that an index .pvtu or .pvtp names, one a part.
+/// \throws IoError  with the path: no such file, malformed, without a piece
+std::vector<std::filesystem::path> parallel_pieces(const std::filesystem::path& path);
+
+/// Reads one piece by itself, without the elements that belong to others. Its numbers in the whole
+/// mesh are VTK's global ids (the attribute, or arrays named GlobalNodeIds and GlobalElementIds) or
+/// the fields vertex_id, face_id and cell_id of `carat partition`; they are no fields any more.
+/// \throws  as read_mesh
+AnyMeshPiece read_piece(const std::filesystem::path& path);
 
 /// VTK's name of the field that is 1 on elements of other parts. Written as bytes, as VTK wants it.
 inline constexpr const char* kGhostField = "vtkGhostType";

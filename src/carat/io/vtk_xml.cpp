@@ -138,11 +138,28 @@ void for_each_cell(
   }
 }
 
+VtkCellVisitor adding_to(VtkCells& cells) {
+  return {[&cells](int type, std::span<const std::int64_t> points, std::int64_t n_points) {
+            cells.add_cell(type, points, n_points);
+          },
+          [&cells](std::span<const std::int64_t> faces, std::int64_t n_points) {
+            cells.add_polyhedron(faces, n_points);
+          }};
+}
+
+Points points_of(vtkPointSet* data) { return to_points(data->GetPoints()); }
+std::vector<Field> point_fields(vtkPointSet* data, std::int64_t n_points) {
+  return to_fields(data->GetPointData(), n_points, "point");
+}
+std::vector<Field> cell_fields(vtkPointSet* data, std::int64_t n_cells) {
+  return to_fields(data->GetCellData(), n_cells, "cell");
+}
+
 MeshData to_mesh(vtkPointSet* data, VtkCells& cells) {
-  Points points = to_points(data->GetPoints());
-  std::vector<Field> vertex_fields = to_fields(data->GetPointData(), points.rows(), "point");
-  std::vector<Field> cell_fields = to_fields(data->GetCellData(), cells.n_cells(), "cell");
-  return cells.build(std::move(points), std::move(vertex_fields), std::move(cell_fields));
+  Points points = points_of(data);
+  std::vector<Field> vertex_fields = point_fields(data, points.rows());
+  return cells.build(std::move(points), std::move(vertex_fields),
+                     cell_fields(data, cells.n_cells()));
 }
 
 void share_points_and_fields(vtkPointSet* data, const Points& positions,

@@ -18,6 +18,7 @@
 class vtkCellArray;
 class vtkDataSet;
 class vtkPointSet;
+class vtkXMLDataElement;
 class vtkXMLReader;
 class vtkXMLWriter;
 
@@ -48,6 +49,11 @@ class VtkXmlReader : public Reader {
   bool failed() const { return this->DataError != 0 || this->InformationError != 0; }
 };
 
+/// The root of a file of that type, VTKFile.
+/// \throws IoError  malformed XML, another type
+vtkSmartPointer<vtkXMLDataElement> parse_vtk_xml(const FileContent& file, const char* type,
+                                                 VtkSession& session);
+
 /// Runs the reader in silence; see VtkXmlReader::failed for how it went.
 void run_vtk_reader(vtkXMLReader* reader, const FileContent& file);
 
@@ -64,6 +70,30 @@ void check_vtk_reader(const VtkXmlReader<Reader>& reader) {
 void for_each_cell(
     vtkCellArray* cells,
     const std::function<void(std::int64_t cell, std::span<const std::int64_t> points)>& visit);
+
+/// Receives the cells of a file in their order.
+struct VtkCellVisitor {
+  /// Points are named by their numbers; `type` is VTK's.
+  std::function<void(int type, std::span<const std::int64_t> points, std::int64_t n_points)> cell;
+  /// The list of faces, as VtkCells::add_polyhedron takes it.
+  std::function<void(std::span<const std::int64_t> faces, std::int64_t n_points)> polyhedron;
+};
+
+/// Reads a VTU or VTP file.
+/// \return  its points and attributes
+/// \throws IoError  malformed, truncated, another type
+vtkSmartPointer<vtkPointSet> load_vtu(const FileContent& file, VtkSession& session,
+                                      const VtkCellVisitor& visit);
+vtkSmartPointer<vtkPointSet> load_vtp(const FileContent& file, VtkSession& session,
+                                      const VtkCellVisitor& visit);
+
+/// What adds all cells to these.
+VtkCellVisitor adding_to(VtkCells& cells);
+
+/// Points and attributes of a data set as they are.
+Points points_of(vtkPointSet* data);
+std::vector<Field> point_fields(vtkPointSet* data, std::int64_t n_points);
+std::vector<Field> cell_fields(vtkPointSet* data, std::int64_t n_cells);
 
 /// The mesh of these cells with the data set's points and attributes.
 MeshData to_mesh(vtkPointSet* data, VtkCells& cells);

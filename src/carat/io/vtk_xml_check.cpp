@@ -162,19 +162,36 @@ std::string_view vtk_file_type(std::string_view content) {
   return "?";
 }
 
-void check_vtk_xml(const FileContent& file, const char* type, VtkSession& session) {
+namespace {
+
+/// Parses the XML elements of a file of that type.
+void parse(const FileContent& file, const char* type, VtkSession& session,
+           vtkXMLDataParser* parser) {
   const std::string_view found = vtk_file_type(file.bytes);
   if (found.empty()) throw IoError("holds no element VTKFile, so it is no VTK XML file");
   if (found != type)
     throw IoError("holds VTK data of type " + in_quotes(found) +
                   "; PolyData or UnstructuredGrid is needed, extract the surface first");
-  vtkNew<vtkXMLDataParser> parser;
   parser->AddObserver(vtkCommand::ErrorEvent, session.observer());
   parser->SetFileName(file.path.c_str());
   const bool parsed = parser->Parse() == 1;
   session.check();
   if (!parsed || parser->GetRootElement() == nullptr)
     throw IoError("malformed XML; the file is truncated or damaged, export it again");
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkXMLDataElement> parse_vtk_xml(const FileContent& file, const char* type,
+                                                 VtkSession& session) {
+  vtkNew<vtkXMLDataParser> parser;
+  parse(file, type, session, parser);
+  return parser->GetRootElement();
+}
+
+void check_vtk_xml(const FileContent& file, const char* type, VtkSession& session) {
+  vtkNew<vtkXMLDataParser> parser;
+  parse(file, type, session, parser);
   Checker(file, parser).check();
 }
 

@@ -21,22 +21,8 @@ bool recognises_vtp(std::string_view content) {
 
 MeshData read_vtp(const FileContent& file) {
   VtkSession session;
-  check_vtk_xml(file, "PolyData", session);
-  vtkNew<VtkXmlReader<vtkXMLPolyDataReader>> reader;
-  run_vtk_reader(reader.Get(), file);
-  check_vtk_reader(*reader);
-  vtkPolyData* const data = reader->GetOutput();
-  const vtkIdType n_points = data->GetNumberOfPoints();
   VtkCells cells;
-  const auto add_all = [&](vtkCellArray* list, int type) {
-    for_each_cell(list, [&](std::int64_t, std::span<const std::int64_t> points) {
-      cells.add_cell(type, points, n_points);
-    });
-  };
-  add_all(data->GetVerts(), VTK_POLY_VERTEX);
-  add_all(data->GetLines(), VTK_POLY_LINE);
-  add_all(data->GetPolys(), VTK_POLYGON);
-  add_all(data->GetStrips(), VTK_TRIANGLE_STRIP);
+  const auto data = load_vtp(file, session, adding_to(cells));
   return to_mesh(data, cells);
 }
 
@@ -51,6 +37,26 @@ void write_vtp(const std::filesystem::path& path, const PolygonMesh& mesh,
 }
 
 }  // namespace
+
+vtkSmartPointer<vtkPointSet> load_vtp(const FileContent& file, VtkSession& session,
+                                      const VtkCellVisitor& visit) {
+  check_vtk_xml(file, "PolyData", session);
+  vtkNew<VtkXmlReader<vtkXMLPolyDataReader>> reader;
+  run_vtk_reader(reader.Get(), file);
+  check_vtk_reader(*reader);
+  vtkPolyData* const data = reader->GetOutput();
+  const vtkIdType n_points = data->GetNumberOfPoints();
+  const auto visit_all = [&](vtkCellArray* list, int type) {
+    for_each_cell(list, [&](std::int64_t, std::span<const std::int64_t> points) {
+      visit.cell(type, points, n_points);
+    });
+  };
+  visit_all(data->GetVerts(), VTK_POLY_VERTEX);
+  visit_all(data->GetLines(), VTK_POLY_LINE);
+  visit_all(data->GetPolys(), VTK_POLYGON);
+  visit_all(data->GetStrips(), VTK_TRIANGLE_STRIP);
+  return data;
+}
 
 FormatEntry vtp_format() {
   return {

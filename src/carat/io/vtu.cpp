@@ -27,29 +27,8 @@ bool recognises_vtu(std::string_view content) {
 
 MeshData read_vtu(const FileContent& file) {
   VtkSession session;
-  check_vtk_xml(file, "UnstructuredGrid", session);
-  vtkNew<VtkGridReader> reader;
-  reader->set_limit(most_vtk_values(file.bytes));
-  run_vtk_reader(static_cast<vtkXMLReader*>(reader.Get()), file);
-  if (!reader->problem().empty()) throw IoError(reader->problem());
-  check_vtk_reader(*reader);
-  vtkUnstructuredGrid* const data = reader->GetOutput();
-  const vtkIdType n_points = data->GetNumberOfPoints();
   VtkCells cells;
-  if (vtkCellArray* const list = data->GetCells()) {
-    vtkUnsignedCharArray* const types = data->GetCellTypesArray();
-    const vtkIdType n_types = types == nullptr ? 0 : types->GetNumberOfValues();
-    if (n_types != list->GetNumberOfCells())
-      throw IoError(std::to_string(list->GetNumberOfCells()) + " cells but " +
-                    std::to_string(n_types) + " cell types; the file is truncated or damaged");
-    for_each_cell(list, [&](std::int64_t cell, std::span<const std::int64_t> points) {
-      if (types->GetValue(cell) == VTK_POLYHEDRON) {
-        cells.add_polyhedron(reader->polyhedron(cell), n_points);
-      } else {
-        cells.add_cell(types->GetValue(cell), points, n_points);
-      }
-    });
-  }
+  const auto data = load_vtu(file, session, adding_to(cells));
   return to_mesh(data, cells);
 }
 
@@ -140,6 +119,33 @@ void write_volume_vtu(const std::filesystem::path& path, const PolyhedralMesh& m
 }
 
 }  // namespace
+
+vtkSmartPointer<vtkPointSet> load_vtu(const FileContent& file, VtkSession& session,
+                                      const VtkCellVisitor& visit) {
+  check_vtk_xml(file, "UnstructuredGrid", session);
+  vtkNew<VtkGridReader> reader;
+  reader->set_limit(most_vtk_values(file.bytes));
+  run_vtk_reader(static_cast<vtkXMLReader*>(reader.Get()), file);
+  if (!reader->problem().empty()) throw IoError(reader->problem());
+  check_vtk_reader(*reader);
+  vtkUnstructuredGrid* const data = reader->GetOutput();
+  const vtkIdType n_points = data->GetNumberOfPoints();
+  if (vtkCellArray* const list = data->GetCells()) {
+    vtkUnsignedCharArray* const types = data->GetCellTypesArray();
+    const vtkIdType n_types = types == nullptr ? 0 : types->GetNumberOfValues();
+    if (n_types != list->GetNumberOfCells())
+      throw IoError(std::to_string(list->GetNumberOfCells()) + " cells but " +
+                    std::to_string(n_types) + " cell types; the file is truncated or damaged");
+    for_each_cell(list, [&](std::int64_t cell, std::span<const std::int64_t> points) {
+      if (types->GetValue(cell) == VTK_POLYHEDRON) {
+        visit.polyhedron(reader->polyhedron(cell), n_points);
+      } else {
+        visit.cell(types->GetValue(cell), points, n_points);
+      }
+    });
+  }
+  return data;
+}
 
 FormatEntry vtu_format() {
   return {.format = {"vtu", "VTK XML unstructured grid", {".vtu"}, true, true, true, true, true},
