@@ -1,25 +1,8 @@
 #include "carat/distributed/message.h"
-#include "parts.h"
+#include "same_parts.h"
 
 namespace carat::test {
 namespace {
-
-void expect_same(const Csr& a, const Csr& b) {
-  EXPECT_EQ(a.offsets, b.offsets);
-  EXPECT_EQ(a.indices, b.indices);
-}
-
-void expect_same(const PartNumbers& a, const PartNumbers& b) {
-  EXPECT_EQ(std::vector({a.part, a.n_parts, a.first_row, a.end_row, a.n_vertices, a.n_components}),
-            std::vector({b.part, b.n_parts, b.first_row, b.end_row, b.n_vertices, b.n_components}));
-  EXPECT_EQ(a.vertices, b.vertices);
-  EXPECT_EQ(a.vertex_rows, b.vertex_rows);
-  EXPECT_EQ(a.vertex_components, b.vertex_components);
-  EXPECT_EQ(a.elements, b.elements);
-  EXPECT_EQ(a.interfaces, b.interfaces);
-  EXPECT_EQ(a.own_elements, b.own_elements);
-  EXPECT_EQ(a.own_interfaces, b.own_interfaces);
-}
 
 /// The part of the next process, from the first one.
 template <class Mesh>
@@ -45,23 +28,14 @@ TEST(Message, parts_arrive_as_they_are) {
     const MeshDivision division =
         divide(mesh, n_processes(), scattered(mesh.n_faces(), n_processes()));
     const auto part = sent(mesh, division), expected = part_of(mesh, division, rank());
-    expect_same(part.numbers, expected.numbers);
-    EXPECT_EQ(part.mesh.points(), expected.mesh.points());
-    expect_same(part.mesh.faces(), expected.mesh.faces());
+    expect_same(part, expected);
   }
   for (const auto& [name, mesh] : volumes_to_divide()) {
     SCOPED_TRACE(name);
     const MeshDivision division =
         divide(mesh, n_processes(), scattered(mesh.n_cells(), n_processes()));
     const auto part = sent(mesh, division), expected = part_of(mesh, division, rank());
-    expect_same(part.numbers, expected.numbers);
-    EXPECT_EQ(part.mesh.points(), expected.mesh.points());
-    expect_same(part.mesh.face_mesh().faces(), expected.mesh.face_mesh().faces());
-    expect_same(part.mesh.cells(), expected.mesh.cells());
-    for (Index f = 0; f < part.mesh.n_faces(); ++f) {
-      EXPECT_EQ(part.mesh.face_cells()[f].below, expected.mesh.face_cells()[f].below);
-      EXPECT_EQ(part.mesh.face_cells()[f].above, expected.mesh.face_cells()[f].above);
-    }
+    expect_same(part, expected);
   }
 }
 

@@ -13,7 +13,7 @@ namespace carat {
 ///
 /// With ids, vertices and elements are numbered in their order, volumes' faces by theirs or as the
 /// cells name them, and the part is the one that part_of() and divide() give. Without ids of
-/// vertices, equal coordinates are the same vertex (see join_points), and numbers follow the
+/// vertices, equal coordinates are the same vertex (see mesh/join_points.h), and numbers follow the
 /// pieces; elements without ids likewise.
 /// \throws Shared<InvalidMesh>  ids of some processes only, or twice; a vertex at two places; an
 ///                              interface that does not fit; more vertices, elements or interfaces

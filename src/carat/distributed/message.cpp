@@ -5,13 +5,9 @@
 #include <cstring>
 
 #include "carat/base/error.h"
-#include "carat/distributed/petsc.h"
 
 namespace carat {
 namespace {
-
-constexpr std::size_t kPiece = std::size_t{1} << 28;
-constexpr int kTag = 1;
 
 void put(Message& message, const Csr& rows) {
   message.put_list(rows.offsets);
@@ -74,30 +70,16 @@ void Message::put_bytes(const void* data, std::size_t size) {
   std::memcpy(bytes_.data() + bytes_.size() - size, data, size);
 }
 
+void Message::require(std::uint64_t n_values, std::size_t size_of_value) const {
+  if (n_values > left() / size_of_value)
+    throw Error("a message ends before " + std::to_string(n_values) + " values of " +
+                std::to_string(size_of_value) + " bytes that it should hold");
+}
+
 void Message::take_bytes(void* data, std::size_t size) {
-  if (size > bytes_.size() - taken_) throw Error("a message of another process is too short");
+  require(size, 1);
   if (size > 0) std::memcpy(data, bytes_.data() + taken_, size);
   taken_ += size;
-}
-
-void Message::send(int process) const {
-  const std::uint64_t size = bytes_.size();
-  MPI_Send(&size, 1, MPI_UINT64_T, process, kTag, PETSC_COMM_WORLD);
-  for (std::size_t at = 0; at < bytes_.size(); at += kPiece)
-    MPI_Send(bytes_.data() + at, static_cast<int>(std::min(kPiece, bytes_.size() - at)), MPI_BYTE,
-             process, kTag, PETSC_COMM_WORLD);
-}
-
-Message Message::receive(int process) {
-  std::uint64_t size = 0;
-  MPI_Recv(&size, 1, MPI_UINT64_T, process, kTag, PETSC_COMM_WORLD, MPI_STATUS_IGNORE);
-  Message message;
-  message.bytes_.resize(static_cast<std::size_t>(size));
-  for (std::size_t at = 0; at < message.bytes_.size(); at += kPiece)
-    MPI_Recv(message.bytes_.data() + at,
-             static_cast<int>(std::min(kPiece, message.bytes_.size() - at)), MPI_BYTE, process,
-             kTag, PETSC_COMM_WORLD, MPI_STATUS_IGNORE);
-  return message;
 }
 
 void put(Message& message, const MeshPart<PolygonMesh>& part) {

@@ -1,9 +1,11 @@
 #pragma once
-// Bytes between processes: put on one side, taken in the same order on the other.
+// Bytes between processes, or in a file: put on one side, taken in the same order on the other.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "carat/mesh/mesh_part.h"
@@ -12,6 +14,9 @@ namespace carat {
 
 class Message {
  public:
+  Message() = default;
+  explicit Message(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
+
   template <class Value>
   requires std::is_trivially_copyable_v<Value>
   void put(const Value& value) { put_bytes(&value, sizeof(Value)); }
@@ -34,6 +39,7 @@ class Message {
   void take_list(List& list) {
     std::uint64_t size = 0;
     take(size);
+    require(size, sizeof(typename List::value_type));
     list.resize(static_cast<std::size_t>(size));
     take_bytes(list.data(), list.size() * sizeof(typename List::value_type));
   }
@@ -42,6 +48,11 @@ class Message {
   void send(int process) const;
   static Message receive(int process);
   std::size_t size() const { return bytes_.size(); }
+  std::span<const char> bytes() const { return bytes_; }
+  /// What is not taken yet.
+  std::size_t left() const { return bytes_.size() - taken_; }
+  /// \throws Error  so many values cannot be in it
+  void require(std::uint64_t n_values, std::size_t size_of_value) const;
 
  private:
   void put_bytes(const void* data, std::size_t size);

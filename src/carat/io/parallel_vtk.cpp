@@ -23,6 +23,7 @@
 #include "carat/io/load_file.h"
 #include "carat/io/vtk_session.h"
 #include "carat/io/vtk_xml.h"
+#include "carat/mesh/join_points.h"
 
 namespace carat {
 namespace detail {

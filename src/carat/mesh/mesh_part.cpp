@@ -79,7 +79,7 @@ Index choose(const Array<Index>& element_part, std::vector<Index>& parts,
     parts.push_back(element_part[element]);
     sum += static_cast<std::uint64_t>(element);
   });
-  return parts.empty() ? -1 : parts[sum % parts.size()];
+  return choose_part(parts, sum);
 }
 
 template <class View>
@@ -263,6 +263,10 @@ double MeshDivision::imbalance() const {
   return element_part.empty()
              ? 1.0
              : largest * static_cast<double>(n_parts) / static_cast<double>(element_part.size());
+}
+
+Index choose_part(std::span<const Index> parts, std::uint64_t sum_of_elements) {
+  return parts.empty() ? -1 : parts[sum_of_elements % parts.size()];
 }
 
 MeshDivision divide(const PolygonMesh& mesh, Index n_parts, std::span<const Index> element_part) {

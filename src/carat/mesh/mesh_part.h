@@ -1,6 +1,7 @@
 #pragma once
 // Parts of a mesh for processes that share the work: who brings what, and the mesh that each needs.
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,12 @@ struct MeshDivision {
   /// Most elements of a part over their mean; 1: even.
   double imbalance() const;
 };
+
+/// The rule by which an interface or vertex goes to one of the parts of its elements.
+/// \param parts            of its elements, in their order, as often as they have it
+/// \param sum_of_elements  of their numbers
+/// \return                 -1: it has no element
+Index choose_part(std::span<const Index> parts, std::uint64_t sum_of_elements);
 
 /// \param n_parts       at least 1; parts may be empty
 /// \param element_part  element -> part

@@ -1,4 +1,4 @@
-#include "carat/io/mesh_piece.h"
+#include "carat/mesh/join_points.h"
 
 #include <string>
 
