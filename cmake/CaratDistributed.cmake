@@ -39,7 +39,7 @@ if(PETSC_FOUND AND Scotch_FOUND AND CARAT_BUILD_IO)
   target_sources(carat_distributed PUBLIC FILE_SET HEADERS BASE_DIRS src
                  FILES src/carat/distributed/eigenmodes.h src/carat/distributed/heat_geodesics.h
                        src/carat/distributed/part_data.h src/carat/distributed/poisson.h
-                       src/carat/distributed/processes.h)
+                       src/carat/distributed/processes.h src/carat/distributed/read_parts.h)
   target_link_libraries(carat_distributed PUBLIC carat_core carat_io carat_partition
                         PRIVATE PkgConfig::PETSC MPI::MPI_CXX)
   set_target_properties(carat_distributed PROPERTIES EXPORT_NAME distributed)

@@ -87,7 +87,8 @@ TEST(Formats, HaveTheirAbilities) {
              (format.reads_volumes ? "R" : "") + (format.writes_volumes ? "W" : "") +
              (format.fields ? "f" : "") + " ";
   EXPECT_EQ(table,
-            "plyrwf offrw stlr vtkrRf vtprwf vturwRWf ovmrRWf openfoamR meditrRf gmshrRf objrw ");
+            "plyrwf offrw stlr vtkrRf pvturRf vtprwf vturwRWf ovmrRWf openfoamR meditrRf gmshrRf "
+            "objrw ");
 }
 
 TEST(Formats, KeepNonFiniteFieldValues) {

@@ -248,12 +248,17 @@ void check_same_fields(const std::vector<VtkPiece>& pieces, const std::vector<fs
   }
 }
 
-/// Whether all pieces that have rows have ids of them.
-bool all_have_ids(const std::vector<VtkPiece>& pieces, std::vector<std::int64_t> VtkPiece::*ids,
-                  const std::vector<std::size_t>& n_rows) {
+/// Whether the pieces have ids: all that have rows, or none.
+bool have_ids(const std::vector<VtkPiece>& pieces, const std::vector<fs::path>& paths,
+              std::vector<std::int64_t> VtkPiece::*ids, const char* where,
+              const std::vector<std::size_t>& n_rows) {
+  std::size_t with = pieces.size(), without = pieces.size();
   for (std::size_t p = 0; p < pieces.size(); ++p)
-    if (n_rows[p] > 0 && (pieces[p].*ids).empty()) return false;
-  return true;
+    if (n_rows[p] > 0) ((pieces[p].*ids).empty() ? without : with) = p;
+  if (with < pieces.size() && without < pieces.size())
+    throw IoError(paths[without].string() + ": it has no global ids of " + where + ", but " +
+                  paths[with].string() + " has; the pieces are not of one mesh");
+  return without == pieces.size();
 }
 
 /// One row of a piece.
@@ -327,7 +332,7 @@ class Merger {
  private:
   void number_points() {
     for (const std::size_t n : n_points_) numbers_.emplace_back(n, -1);
-    if (all_have_ids(pieces_, &VtkPiece::vertex_ids, n_points_)) {
+    if (have_ids(pieces_, paths_, &VtkPiece::vertex_ids, "points", n_points_)) {
       number_by_ids();
     } else {
       number_by_places();
@@ -411,7 +416,7 @@ class Merger {
     for (std::size_t p = 0; p < pieces_.size(); ++p)
       for (std::size_t c = 0; c < n_cells_[p]; ++c)
         cells_.push_back({p, static_cast<std::int64_t>(c)});
-    if (!all_have_ids(pieces_, &VtkPiece::cell_ids, n_cells_)) return;
+    if (!have_ids(pieces_, paths_, &VtkPiece::cell_ids, "cells", n_cells_)) return;
     const auto id = [&](const Row& row) {
       return pieces_[row.piece].cell_ids[static_cast<std::size_t>(row.index)];
     };
