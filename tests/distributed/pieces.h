@@ -51,6 +51,19 @@ std::vector<Field> select(const std::vector<Field>& fields, const Numbers& rows)
   return selected;
 }
 
+/// What the part has of the patches of the whole mesh.
+inline std::vector<BoundaryPatch> select(std::vector<BoundaryPatch> patches,
+                                         const PartNumbers& numbers) {
+  for (BoundaryPatch& patch : patches) {
+    std::vector<Index> here;
+    for (Index f = 0; f < static_cast<Index>(numbers.interfaces.size()); ++f)
+      if (std::binary_search(patch.faces.begin(), patch.faces.end(), numbers.interfaces[f]))
+        here.push_back(f);
+    patch.faces = here;
+  }
+  return patches;
+}
+
 /// A process's part of the whole mesh with what belongs to it.
 template <class Mesh>
 PartData<Mesh> expected_part(const Mesh& mesh, const std::vector<Index>& element_part) {
@@ -61,14 +74,7 @@ PartData<Mesh> expected_part(const Mesh& mesh, const std::vector<Index>& element
   data.fields.vertex = select(fields.vertex, numbers.vertices);
   data.fields.face = select(fields.face, numbers.elements);
   data.fields.cell = select(fields.cell, numbers.elements);
-  for (BoundaryPatch patch : sample_patches(mesh)) {
-    std::vector<Index> here;
-    for (Index f = 0; f < static_cast<Index>(numbers.interfaces.size()); ++f)
-      if (std::binary_search(patch.faces.begin(), patch.faces.end(), numbers.interfaces[f]))
-        here.push_back(f);
-    patch.faces = here;
-    data.patches.push_back(patch);
-  }
+  data.patches = select(sample_patches(mesh), numbers);
   return data;
 }
 

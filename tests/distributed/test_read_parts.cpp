@@ -1,5 +1,6 @@
 #include "carat/base/error.h"
 #include "carat/distributed/read_parts.h"
+#include "io/foam_case.h"
 #include "io/piece_files.h"
 #include "pieces.h"
 
@@ -102,6 +103,53 @@ std::string failure(const std::filesystem::path& path) {
 
 void expect_says(const std::string& message, const std::string& says) {
   EXPECT_NE(message.find(says), std::string::npos) << message;
+}
+
+TEST(ReadParts, processors_of_openfoam_are_read_as_the_parts_of_the_whole) {
+  for (const char* family : {"cube-random-hex", "cube-voronoi", "ball-tets"}) {
+    SCOPED_TRACE(family);
+    const PolyhedralMesh mesh = generate_volume(family, {.level = 0});
+    for_cuts(mesh, [&](const std::vector<Index>& cut) {
+      const SharedFolder folder;
+      const FoamCase form(FoamForm::Binary64);
+      first_alone([&] { form.write(folder / "whole", mesh); });
+      const VolumeData whole = read_volume(folder / "whole");
+      first_alone([&] {
+        form.write_divided(folder / "case", whole.mesh, whole.patches, cut, n_processes());
+        form.write_divided(folder / "bare", whole.mesh, whole.patches, cut, n_processes(), false);
+      });
+      EXPECT_TRUE(is_in_parts(folder / "case"));
+      EXPECT_FALSE(is_in_parts(folder / "whole"));
+      const auto data = std::get<PartData<PolyhedralMesh>>(read_parts(folder / "case"));
+      PartData<PolyhedralMesh> expected;
+      expected.part = own_part(whole.mesh, cut);
+      expected.patches = select(whole.patches, expected.part.numbers);
+      expect_same(data, expected);
+      // Without numbers it is the same mesh, numbered otherwise.
+      const auto bare = std::get<PartData<PolyhedralMesh>>(read_parts(folder / "bare"));
+      EXPECT_EQ(bare.part.numbers.n_vertices, mesh.n_vertices());
+      EXPECT_EQ(bare.part.numbers.n_components, 1);
+      EXPECT_EQ(bare.part.mesh.n_cells(), data.part.mesh.n_cells());
+      EXPECT_EQ(bare.part.mesh.n_faces(), data.part.mesh.n_faces());
+      ASSERT_EQ(bare.patches.size(), data.patches.size());
+      for (std::size_t k = 0; k < bare.patches.size(); ++k)
+        EXPECT_EQ(bare.patches[k].faces.size(), data.patches[k].faces.size());
+    });
+  }
+}
+
+TEST(ReadParts, a_processor_of_openfoam_that_is_damaged_is_an_error_in_all_processes) {
+  const SharedFolder folder;
+  const FoamCase form(FoamForm::Text);
+  const std::string last = "processor" + std::to_string(n_processes() - 1);
+  first_alone([&] {
+    const VolumeData whole = read_volume(form.write(folder / "whole", hex_grid(3)));
+    form.write_divided(folder / "case", whole.mesh, whole.patches,
+                       in_blocks(whole.mesh.n_cells(), n_processes()), n_processes());
+    const auto faces = folder / "case" / last / "constant" / "polyMesh" / "faces";
+    write_bytes(faces, read_bytes(faces).substr(0, 700));
+  });
+  expect_says(failure<IoError>(folder / "case"), last);
 }
 
 TEST(ReadParts, another_number_of_parts_is_refused_with_both_remedies) {

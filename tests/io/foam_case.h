@@ -53,6 +53,23 @@ class FoamCase {
     return folder;
   }
 
+  /// The case of a mesh that such files gave, divided over processors as decomposePar does it.
+  /// \param patches  of the whole mesh, which hold all of its boundary
+  std::filesystem::path write_divided(const std::filesystem::path& folder,
+                                      const PolyhedralMesh& mesh,
+                                      const std::vector<BoundaryPatch>& patches,
+                                      const std::vector<Index>& cell_part, Index n_parts,
+                                      bool addressing = true) const {
+    for (Index p = 0; p < n_parts; ++p) {
+      const auto files = folder / ("processor" + std::to_string(p)) / "constant" / "polyMesh";
+      std::filesystem::create_directories(files);
+      for (const auto& [name, content] : processor_files(mesh, patches, cell_part, p, n_parts))
+        if (addressing || name.find("ProcAddressing") == name.npos)
+          write_bytes(files / name, content);
+    }
+    return folder;
+  }
+
   bool binary() const { return form_ != FoamForm::Text; }
 
  private:
@@ -142,6 +159,93 @@ class FoamCase {
            "        transform { kind none; }\n        nFaces          " +
            std::to_string(n - 1) + ";\n        startFace       " + std::to_string(start + 1) +
            "; // the rest\n    }\n)\n";
+  }
+
+  using Labels = std::vector<std::int64_t>;
+
+  std::map<std::string, std::string> processor_files(const PolyhedralMesh& mesh,
+                                                     const std::vector<BoundaryPatch>& patches,
+                                                     const std::vector<Index>& cell_part, Index p,
+                                                     Index n_parts) const {
+    std::map<Index, std::int64_t> cell_place, point_place;
+    Labels cells, points_here, face_ids, owner, neighbour, patch_ids;
+    for (Index c = 0; c < mesh.n_cells(); ++c)
+      if (cell_part[std::size_t(c)] == p) {
+        cell_place[c] = static_cast<std::int64_t>(cells.size());
+        cells.push_back(c);
+      }
+    const auto own = [&](Index c) { return c >= 0 && cell_part[std::size_t(c)] == p; };
+    const auto sides = [&](Index f) { return mesh.face_cells()[std::size_t(f)]; };
+    std::vector<Labels> faces;
+    // A face points out of its owner: what came from files does so in the whole mesh.
+    const auto add = [&](Index f, bool turned) {
+      Labels face(mesh.face(f).begin(), mesh.face(f).end());
+      if (turned) std::reverse(face.begin() + 1, face.end());
+      faces.push_back(face);
+      face_ids.push_back(turned ? -(f + 1) : f + 1);
+      owner.push_back(cell_place[turned ? sides(f).above : sides(f).below]);
+    };
+    for (Index f = 0; f < mesh.n_faces(); ++f)
+      if (own(sides(f).below) && own(sides(f).above)) {
+        add(f, false);
+        neighbour.push_back(cell_place[sides(f).above]);
+      }
+    std::string list;
+    std::size_t start = faces.size(), n_patches = 0;
+    const auto end_patch = [&](const std::string& name, const std::string& rest, int id) {
+      list += "    \"" + name + "\"\n    {\n        " + rest + "\n        nFaces " +
+              std::to_string(faces.size() - start) + ";\n        startFace " +
+              std::to_string(start) + ";\n    }\n";
+      start = faces.size();
+      patch_ids.push_back(id);
+      ++n_patches;
+    };
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+      for (const Index f : patches[k].faces)
+        if (own(std::max(sides(f).below, sides(f).above))) add(f, false);
+      end_patch(patches[k].name, "type " + patches[k].type + ";", int(k));
+    }
+    for (Index other = 0; other < n_parts; ++other) {
+      const std::size_t before = faces.size();
+      for (Index f = 0; f < mesh.n_faces(); ++f) {
+        const FaceCells both = sides(f);
+        if (other == p || both.below < 0 || both.above < 0 || own(both.below) == own(both.above))
+          continue;
+        const bool turned = own(both.above);
+        if (cell_part[std::size_t(turned ? both.below : both.above)] == other) add(f, turned);
+      }
+      const std::string names =
+          std::to_string(p) + ";\n        neighbProcNo " + std::to_string(other);
+      if (faces.size() > before)
+        end_patch(
+            "procBoundary" + std::to_string(p) + "to" + std::to_string(other),
+            "type processor;\n        inGroups 1(processor);\n        myProcNo " + names + ";", -1);
+    }
+    for (Labels& face : faces)
+      for (std::int64_t& v : face) {
+        const auto [at, added] = point_place.emplace(static_cast<Index>(v),
+                                                     static_cast<std::int64_t>(points_here.size()));
+        if (added) points_here.push_back(v);
+        v = at->second;
+      }
+    Points places(static_cast<Eigen::Index>(points_here.size()), 3);
+    for (std::size_t v = 0; v < points_here.size(); ++v)
+      places.row(static_cast<Eigen::Index>(v)) =
+          mesh.points().row(static_cast<Eigen::Index>(points_here[v]));
+    const auto label_file = [&](const char* name, const Labels& values) {
+      return header("labelList", name) + labels(values) + footer();
+    };
+    return {{"points", header("vectorField", "points") + points(places) + footer()},
+            {"faces", header(binary() ? "faceCompactList" : "faceList", "faces") +
+                          face_list(faces) + footer()},
+            {"owner", label_file("owner", owner)},
+            {"neighbour", label_file("neighbour", neighbour)},
+            {"boundary", header("polyBoundaryMesh", "boundary") + std::to_string(n_patches) +
+                             "\n(\n" + list + ")\n"},
+            {"pointProcAddressing", label_file("pointProcAddressing", points_here)},
+            {"faceProcAddressing", label_file("faceProcAddressing", face_ids)},
+            {"cellProcAddressing", label_file("cellProcAddressing", cells)},
+            {"boundaryProcAddressing", label_file("boundaryProcAddressing", patch_ids)}};
   }
 
   FoamForm form_;

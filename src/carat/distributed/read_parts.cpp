@@ -7,6 +7,7 @@
 #include "carat/base/error.h"
 #include "carat/distributed/exchange.h"
 #include "carat/distributed/mesh_pieces.h"
+#include "carat/io/openfoam.h"
 #include "carat/io/parallel_vtk.h"
 
 namespace carat {
@@ -54,7 +55,9 @@ AnyPartData join(AnyMeshPiece piece) {
 
 }  // namespace
 
-bool is_in_parts(const fs::path& path) { return is_parallel_vtk(path); }
+bool is_in_parts(const fs::path& path) {
+  return is_parallel_vtk(path) || !foam_processors(path).empty();
+}
 
 AnyPartData read_parts(const fs::path& path) {
   AnyMeshPiece piece;
@@ -62,9 +65,11 @@ AnyPartData read_parts(const fs::path& path) {
     if (!is_in_parts(path))
       throw IoError(path.string() +
                     ": is no mesh in parts; divide it first (carat partition MESH -n N -o DIR)");
-    const std::vector<fs::path> files = parallel_pieces(path);
+    const bool vtk = is_parallel_vtk(path);
+    const std::vector<fs::path> files = vtk ? parallel_pieces(path) : foam_processors(path);
     check_number_of_parts(path, files.size());
-    piece = read_piece(files[static_cast<std::size_t>(own_rank())]);
+    const fs::path& own = files[static_cast<std::size_t>(own_rank())];
+    piece = vtk ? read_piece(own) : AnyMeshPiece(read_foam_piece(own));
   });
   return join(std::move(piece));
 }

@@ -8,7 +8,8 @@
 namespace carat {
 
 /// Whether a path names a mesh in parts: an index .pvtu or .pvtp, a file .cparts, an OpenFOAM case
-/// with the folder processor0 (also if it has the whole mesh). Looks at names alone.
+/// with the folder processor0 (also if it has the whole mesh). Looks at names alone, not into
+/// files.
 bool is_in_parts(const std::filesystem::path& path);
 
 /// Collective. Each process reads its own part and nothing else of the mesh.

@@ -123,7 +123,8 @@ Index FoamFile::read_label() {
   return static_cast<Index>(value);
 }
 
-Array<Index> FoamFile::read_labels(std::int64_t most) {
+template <class List, class Read>
+List FoamFile::read_list(std::int64_t most, const Read& read) {
   if (!scanner_.to_content()) scanner_.fail("the file ends too early; it is truncated");
   Scanner look_ahead = scanner_;
   const std::int64_t n = look_ahead.integer();
@@ -134,7 +135,7 @@ Array<Index> FoamFile::read_labels(std::int64_t most) {
                     " are possible");
     scanner_.to_content();
     start_values();
-    const Array<Index> labels(static_cast<std::size_t>(n), read_label());
+    const List labels(static_cast<std::size_t>(n), read());
     scanner_.set_encoding(Encoding::Text);
     if (!scanner_.to_content() || !scanner_.take('}')) scanner_.fail("'}' is missing");
     return labels;
@@ -143,10 +144,18 @@ Array<Index> FoamFile::read_labels(std::int64_t most) {
     scanner_ = look_ahead;  // an empty list may have no parentheses
     return {};
   }
-  Array<Index> labels(static_cast<std::size_t>(open_list("numbers", 1, size_of(label_))));
-  for (Index& label : labels) label = read_label();
+  List labels(static_cast<std::size_t>(open_list("numbers", 1, size_of(label_))));
+  for (auto& label : labels) label = read();
   close_parenthesis();
   return labels;
+}
+
+Array<Index> FoamFile::read_labels(std::int64_t most) {
+  return read_list<Array<Index>>(most, [&] { return read_label(); });
+}
+
+std::vector<std::int64_t> FoamFile::read_ids(std::int64_t most) {
+  return read_list<std::vector<std::int64_t>>(most, [&] { return scanner_.whole(label_); });
 }
 
 Points FoamFile::read_vectors() {

@@ -44,6 +44,8 @@ class FoamFile {
   /// The next list of whole numbers. One of equal numbers can be written as 12{0}.
   /// \param most  numbers that such a list can stand for
   Array<Index> read_labels(std::int64_t most);
+  /// The same for numbers of any sign and size.
+  std::vector<std::int64_t> read_ids(std::int64_t most);
   /// A list of vectors with finite coordinates.
   Points read_vectors();
   /// A list of lists of whole numbers, in either form.
@@ -57,6 +59,8 @@ class FoamFile {
   void open_parenthesis();
   void close_parenthesis();
   void start_values() { scanner_.set_encoding(encoding_); }
+  template <class List, class Read>
+  List read_list(std::int64_t most, const Read& read);
   Index read_label();
   Csr read_compact_faces();
 

@@ -1,8 +1,12 @@
 // OpenFOAM: the folder polyMesh with its files points, faces, owner, neighbour and boundary, in
 // text or binary, each perhaps packed with gzip.
 
+#include "carat/io/openfoam.h"
+
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <utility>
@@ -11,7 +15,8 @@
 #include "carat/io/foam_file.h"
 #include "carat/io/format.h"
 
-namespace carat::detail {
+namespace carat {
+namespace detail {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,7 +51,7 @@ fs::path find_mesh_folder(const fs::path& path) {
 }
 
 bool takes_path(const fs::path& path) {
-  return is_case_file(path) || !find_mesh_folder(path).empty();
+  return is_case_file(path) || !find_mesh_folder(path).empty() || !foam_processors(path).empty();
 }
 
 /// A file that was taken out of its folder.
@@ -138,45 +143,308 @@ BoundaryPatch to_patch(std::string name, const PatchEntry& entry, const Polyhedr
   return patch;
 }
 
-std::vector<BoundaryPatch> read_patches(const fs::path& folder, const PolyhedralMesh& mesh) {
+using PatchEntries = std::vector<std::pair<std::string, PatchEntry>>;
+
+PatchEntries read_patch_entries(const fs::path& folder) {
   const FoamFile file(folder, "boundary");
   FoamTokens tokens(file.body());
   to_number(file, tokens, tokens.next());
   if (tokens.next() != "(") fail_in(file, tokens, "'(' is missing; the file is damaged");
-  std::vector<BoundaryPatch> patches;
-  std::vector<bool> taken(static_cast<std::size_t>(mesh.n_faces()));
+  PatchEntries entries;
   for (std::string_view name = tokens.next(); name != ")"; name = tokens.next()) {
     if (name.empty() || tokens.next() != "{")
       fail_in(file, tokens, "the list of patches ends too early; the file is truncated or damaged");
     std::string text(name);
-    const PatchEntry entry = read_patch(file, tokens);
-    patches.push_back(to_patch(std::move(text), entry, mesh, taken));
+    entries.emplace_back(std::move(text), read_patch(file, tokens));
   }
+  return entries;
+}
+
+/// Whether a patch is where two processors meet.
+bool between_processors(const PatchEntry& entry) { return entry.type.starts_with("processor"); }
+
+std::vector<BoundaryPatch> read_patches(const fs::path& folder, const PolyhedralMesh& mesh,
+                                        bool of_piece) {
+  std::vector<BoundaryPatch> patches;
+  if (!has_file(folder, "boundary")) return patches;
+  in_file("boundary", [&] {
+    std::vector<bool> taken(static_cast<std::size_t>(mesh.n_faces()));
+    for (auto& [name, entry] : read_patch_entries(folder)) {
+      BoundaryPatch patch = to_patch(std::move(name), entry, mesh, taken);
+      if (!of_piece || !between_processors(entry)) patches.push_back(std::move(patch));
+    }
+  });
   return patches;
 }
 
+/// The files of a folder polyMesh but for the patches.
+struct FoamLists {
+  Points points;
+  Csr faces;
+  Array<Index> owner, neighbour;
+  Index n_faces() const { return static_cast<Index>(faces.offsets.size()) - 1; }
+};
+
+FoamLists read_lists(const fs::path& folder) {
+  FoamLists lists;
+  lists.points = in_file("points", [&] { return FoamFile(folder, "points").read_vectors(); });
+  lists.faces = in_file("faces", [&] { return FoamFile(folder, "faces").read_faces(); });
+  const auto read_cells = [&](const char* name) {
+    return in_file(name, [&] { return FoamFile(folder, name).read_labels(lists.n_faces()); });
+  };
+  lists.owner = read_cells("owner");
+  lists.neighbour = read_cells("neighbour");
+  // Old versions fill the list up for the boundary.
+  while (!lists.neighbour.empty() && lists.neighbour.back() == -1) lists.neighbour.pop_back();
+  return lists;
+}
+
+PolyhedralMesh to_mesh(FoamLists lists) {
+  return PolyhedralMesh::from_owner_neighbour(std::move(lists.points), std::move(lists.faces),
+                                              lists.owner, lists.neighbour);
+}
+
+/// Numbers in the whole mesh of what a processor has.
+struct Addressing {
+  std::vector<std::int64_t> points, faces, cells;
+  std::vector<bool> turned;  ///< face -> in the whole mesh it points the other way
+  bool known = false;
+};
+
+Addressing read_addressing(const fs::path& folder, std::int64_t n_points, std::int64_t n_faces,
+                           std::int64_t n_cells) {
+  Addressing result;
+  if (!has_file(folder, "cellProcAddressing")) return result;
+  result.known = true;
+  const auto read = [&](const char* name, std::int64_t n) {
+    return in_file(name, [&] {
+      std::vector<std::int64_t> ids = FoamFile(folder, name).read_ids(n);
+      if (static_cast<std::int64_t>(ids.size()) != n)
+        throw IoError("has " + std::to_string(ids.size()) + " numbers, the mesh needs " +
+                      std::to_string(n) + "; divide the case anew");
+      return ids;
+    });
+  };
+  const auto check = [](const char* name, const std::vector<std::int64_t>& ids) {
+    for (const std::int64_t id : ids)
+      if (id < 0)
+        throw IoError(std::string(name) + ": has the number " + std::to_string(id) +
+                      ", which cannot be; the file is damaged");
+  };
+  result.points = read("pointProcAddressing", n_points);
+  result.cells = read("cellProcAddressing", n_cells);
+  result.faces = read("faceProcAddressing", n_faces);
+  // Counted from 1, with the sign of the face's direction.
+  for (std::int64_t& id : result.faces) {
+    result.turned.push_back(id < 0);
+    if (id != std::numeric_limits<std::int64_t>::min()) id = std::abs(id) - 1;
+  }
+  check("pointProcAddressing", result.points);
+  check("cellProcAddressing", result.cells);
+  check("faceProcAddressing", result.faces);
+  return result;
+}
+
+fs::path polymesh(const fs::path& processor) { return processor / "constant" / "polyMesh"; }
+
+/// Runs `work` and puts the processor's folder in front of what it throws.
+template <class Work>
+auto in_piece(const fs::path& processor, Work&& work) {
+  try {
+    return work();
+  } catch (const InvalidMesh& error) {
+    throw InvalidMesh(polymesh(processor).string() + ": " + error.what(), error.elements());
+  } catch (const IoError& error) {
+    throw IoError(polymesh(processor).string() + ": " + error.what(), error.elements());
+  }
+}
+
+/// A processor's files.
+struct FoamPiece {
+  FoamLists lists;
+  Addressing ids;
+  PolyhedralMesh mesh;
+  std::vector<BoundaryPatch> patches;
+};
+
+/// Turns faces as they are in the whole mesh, and gives every cell its faces in the order that it
+/// has there: those that it owns, then the others, by their numbers.
+void order_as_whole(FoamPiece& piece) {
+  FoamLists& lists = piece.lists;
+  const auto id = [&](Index f) { return piece.ids.faces[static_cast<std::size_t>(f)]; };
+  Array<FaceCells> face_cells = piece.mesh.face_cells();
+  for (Index f = 0; f < lists.n_faces(); ++f) {
+    if (!piece.ids.turned[static_cast<std::size_t>(f)]) continue;
+    std::reverse(lists.faces.indices.begin() + lists.faces.begin(f) + 1,
+                 lists.faces.indices.begin() + lists.faces.end(f));
+    FaceCells& sides = face_cells[static_cast<std::size_t>(f)];
+    std::swap(sides.below, sides.above);
+  }
+  Csr cells = piece.mesh.cells();
+  for (Index c = 0; c < cells.n_rows(); ++c) {
+    const auto of_neighbour = [&](Index f) {
+      const auto i = static_cast<std::size_t>(f);
+      return piece.ids.turned[i] || lists.owner[i] != c;
+    };
+    std::sort(cells.indices.begin() + cells.begin(c), cells.indices.begin() + cells.end(c),
+              [&](Index a, Index b) {
+                return std::pair(of_neighbour(a), id(a)) < std::pair(of_neighbour(b), id(b));
+              });
+  }
+  piece.mesh = PolyhedralMesh::from_face_cells(piece.mesh.points(), lists.faces, std::move(cells),
+                                               std::move(face_cells));
+}
+
+/// Faces and cells are as in the whole mesh where the numbers in that are known.
+FoamPiece read_foam_files(const fs::path& folder) {
+  FoamPiece piece;
+  piece.lists = read_lists(folder);
+  FoamLists& lists = piece.lists;
+  // Faces, points and cells are checked as those of any mesh.
+  piece.mesh = to_mesh(lists);
+  piece.ids =
+      read_addressing(folder, piece.mesh.n_vertices(), piece.mesh.n_faces(), piece.mesh.n_cells());
+  piece.patches = read_patches(folder, piece.mesh, true);
+  if (piece.ids.known) order_as_whole(piece);
+  return piece;
+}
+
+/// The mesh of a case from those of all its processors, as OpenFOAM numbers it.
+class CaseMerger {
+ public:
+  explicit CaseMerger(const std::vector<fs::path>& processors) {
+    std::size_t n_points = 0, n_faces = 0;
+    for (const fs::path& processor : processors) {
+      pieces_.push_back(in_piece(processor, [&] { return read(polymesh(processor)); }));
+      n_points += pieces_.back().ids.points.size();
+      n_faces += pieces_.back().ids.faces.size();
+    }
+    // Every number is one of some processor, so there are not more.
+    points_.resize(n_points);
+    faces_.resize(n_faces);
+    for (std::size_t p = 0; p < processors.size(); ++p)
+      in_piece(processors[p], [&] { add(pieces_[p]); });
+    pieces_.clear();
+    while (!points_.empty() && !points_.back().known) points_.pop_back();
+    while (!faces_.empty() && faces_.back().owner < 0 && faces_.back().neighbour < 0)
+      faces_.pop_back();
+  }
+
+  VolumeData merge() {
+    FoamLists lists;
+    lists.points.resize(static_cast<Eigen::Index>(points_.size()), 3);
+    for (std::size_t v = 0; v < points_.size(); ++v) {
+      if (!points_[v].known) fail_missing("point", v);
+      for (int k = 0; k < 3; ++k)
+        lists.points(static_cast<Eigen::Index>(v), k) = points_[v].at[static_cast<std::size_t>(k)];
+    }
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const Face& face = faces_[f];
+      if (face.owner < 0) fail_missing("face", f);
+      lists.faces.indices.insert(lists.faces.indices.end(), face.vertices.begin(),
+                                 face.vertices.end());
+      lists.faces.offsets.push_back(static_cast<Index>(lists.faces.indices.size()));
+      lists.owner.push_back(face.owner);
+      if (face.neighbour < 0) continue;
+      if (lists.neighbour.size() != f)
+        throw IoError("face " + std::to_string(f) +
+                      " of the whole mesh lies between cells, but comes behind one of the "
+                      "boundary; divide the case anew");
+      lists.neighbour.push_back(face.neighbour);
+    }
+    VolumeData data{to_mesh(std::move(lists)), {}, std::move(patches_)};
+    for (BoundaryPatch& patch : data.patches) {
+      std::sort(patch.faces.begin(), patch.faces.end());
+      for (const Index f : patch.faces)
+        if (!data.mesh.face_cells()[static_cast<std::size_t>(f)].boundary())
+          throw IoError("patch " + in_quotes(patch.name) + " has face " + std::to_string(f) +
+                        " of the whole mesh, which is not on the boundary; divide the case anew");
+    }
+    return data;
+  }
+
+ private:
+  struct Point {
+    std::array<double, 3> at{};
+    bool known = false;
+  };
+  struct Face {
+    std::vector<Index> vertices;
+    Index owner = -1, neighbour = -1;
+  };
+
+  [[noreturn]] static void fail_missing(const char* what, std::size_t number) {
+    throw IoError(std::string(what) + " " + std::to_string(number) +
+                  " of the whole mesh is on no processor; a folder is missing, divide the case "
+                  "anew");
+  }
+
+  template <class Element>
+  static Element& at(std::vector<Element>& list, std::int64_t id) {
+    if (static_cast<std::uint64_t>(id) >= list.size())
+      throw IoError("has the number " + std::to_string(id) + " in the whole mesh, which all " +
+                    "processors together cannot have; a folder is missing or damaged");
+    return list[static_cast<std::size_t>(id)];
+  }
+
+  static FoamPiece read(const fs::path& folder) {
+    FoamPiece piece = read_foam_files(folder);
+    if (!piece.ids.known)
+      throw IoError(
+          "is of a divided case, but has no cellProcAddressing, so that one process cannot put it "
+          "together; reconstruct the mesh (reconstructParMesh -constant), or read it by as many "
+          "processes");
+    return piece;
+  }
+
+  void add(const FoamPiece& piece) {
+    const Addressing& ids = piece.ids;
+    const auto numbers = [](const std::vector<std::int64_t>& list, Index i) {
+      const std::int64_t id = list[static_cast<std::size_t>(i)];
+      if (id >= std::numeric_limits<Index>::max())
+        throw IoError("has the number " + std::to_string(id) +
+                      " in the whole mesh; one process can read up to 2^31 - 1");
+      return static_cast<Index>(id);
+    };
+    for (Index v = 0; v < piece.mesh.n_vertices(); ++v)
+      at(points_, numbers(ids.points, v)) = {
+          {piece.mesh.points()(v, 0), piece.mesh.points()(v, 1), piece.mesh.points()(v, 2)}, true};
+    for (Index f = 0; f < piece.lists.n_faces(); ++f) {
+      const auto i = static_cast<std::size_t>(f);
+      Face& face = at(faces_, numbers(ids.faces, f));
+      face.vertices.clear();
+      for (const Index v : piece.lists.faces.row(f))
+        face.vertices.push_back(numbers(ids.points, v));
+      const Index owner = numbers(ids.cells, piece.lists.owner[i]);
+      (ids.turned[i] ? face.neighbour : face.owner) = owner;
+      if (i < piece.lists.neighbour.size())
+        face.neighbour = numbers(ids.cells, piece.lists.neighbour[i]);
+    }
+    for (const BoundaryPatch& patch : piece.patches) {
+      auto known = std::find_if(patches_.begin(), patches_.end(),
+                                [&](const BoundaryPatch& p) { return p.name == patch.name; });
+      if (known == patches_.end()) known = patches_.insert(known, {patch.name, patch.type, {}});
+      for (const Index f : patch.faces) known->faces.push_back(numbers(ids.faces, f));
+    }
+  }
+
+  std::vector<FoamPiece> pieces_;
+  std::vector<Point> points_;
+  std::vector<Face> faces_;
+  std::vector<BoundaryPatch> patches_;
+};
+
 MeshData read_openfoam(const FileContent& content) {
   const fs::path folder = find_mesh_folder(content.path);
-  if (folder.empty())
+  if (folder.empty()) {
+    const std::vector<fs::path> processors = foam_processors(content.path);
+    if (!processors.empty()) return CaseMerger(processors).merge();
     throw IoError(
         "is of an OpenFOAM case, but no folder polyMesh with faces and owner is beside it; name "
-        "the "
-        "case's folder");
-  Points points = in_file("points", [&] { return FoamFile(folder, "points").read_vectors(); });
-  Csr faces = in_file("faces", [&] { return FoamFile(folder, "faces").read_faces(); });
-  const auto n_faces = static_cast<std::int64_t>(faces.offsets.size()) - 1;
-  const auto read_cells = [&](const char* name) {
-    return in_file(name, [&] { return FoamFile(folder, name).read_labels(n_faces); });
-  };
-  const Array<Index> owner = read_cells("owner");
-  Array<Index> neighbour = read_cells("neighbour");
-  // Old versions fill the list up for the boundary.
-  while (!neighbour.empty() && neighbour.back() == -1) neighbour.pop_back();
-  VolumeData data{
-      PolyhedralMesh::from_owner_neighbour(std::move(points), std::move(faces), owner, neighbour),
-      {}};
-  if (has_file(folder, "boundary"))
-    data.patches = in_file("boundary", [&] { return read_patches(folder, data.mesh); });
+        "the case's folder");
+  }
+  VolumeData data{to_mesh(read_lists(folder)), {}};
+  data.patches = read_patches(folder, data.mesh, false);
   return data;
 }
 
@@ -191,4 +459,35 @@ FormatEntry openfoam_format() {
           .takes_path = takes_path};
 }
 
-}  // namespace carat::detail
+}  // namespace detail
+
+std::vector<std::filesystem::path> foam_processors(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const bool is_folder = std::filesystem::is_directory(path, ignored);
+  if (!is_folder && !detail::is_case_file(path)) return {};
+  const std::filesystem::path folder =
+      is_folder ? path : std::filesystem::absolute(path, ignored).parent_path();
+  std::vector<std::filesystem::path> processors;
+  for (;;) {
+    const auto next = folder / ("processor" + std::to_string(processors.size()));
+    // One without a mesh is missed when it is read.
+    if (!std::filesystem::is_directory(processors.empty() ? detail::polymesh(next) : next, ignored))
+      return processors;
+    processors.push_back(next);
+  }
+}
+
+MeshPiece<PolyhedralMesh> read_foam_piece(const std::filesystem::path& folder) {
+  return detail::in_piece(folder, [&] {
+    detail::FoamPiece files = detail::read_foam_files(detail::polymesh(folder));
+    MeshPiece<PolyhedralMesh> piece;
+    piece.mesh = std::move(files.mesh);
+    piece.patches = std::move(files.patches);
+    piece.vertex_ids = std::move(files.ids.points);
+    piece.element_ids = std::move(files.ids.cells);
+    piece.interface_ids = std::move(files.ids.faces);
+    return piece;
+  });
+}
+
+}  // namespace carat
