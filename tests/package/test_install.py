@@ -1,7 +1,8 @@
 """Installs a build, moves it elsewhere and uses it from outside, as another project would.
 
-Usage: test_install.py SOURCE BUILD WITH_IO(0|1) CMAKE GENERATOR CXX_COMPILER
+Usage: test_install.py SOURCE BUILD WITH_IO(0|1) CMAKE GENERATOR CXX_COMPILER MPIRUN(none: without distributed)
 """
+import os
 import pathlib
 import re
 import shutil
@@ -10,7 +11,7 @@ import sys
 import tempfile
 import unittest
 
-SOURCE, BUILD, WITH_IO, CMAKE, GENERATOR, COMPILER = sys.argv[1:7]
+SOURCE, BUILD, WITH_IO, CMAKE, GENERATOR, COMPILER, MPIRUN = sys.argv[1:8]
 SOURCE = pathlib.Path(SOURCE)
 WITH_IO = WITH_IO == "1"
 
@@ -53,7 +54,7 @@ class Package(unittest.TestCase):
     def sample_run(self, example):
         """The output that the header of an example promises."""
         text = (SOURCE / "examples" / f"{example}.cpp").read_text()
-        block = re.search(rf"^// Sample run: {example}.*\n((?://   .*\n)+)", text, re.M)
+        block = re.search(r"^// Sample run: .*\n((?://   .*\n)+)", text, re.M)
         return "".join(line[5:] + "\n" for line in block.group(1).splitlines())
 
     def test_core_alone(self):
@@ -78,6 +79,21 @@ class Package(unittest.TestCase):
         failed = run(programs / "geodesics", self.folder / "none.ply", result)
         self.assertEqual(failed.returncode, 3)
         self.assertIn("none.ply", failed.stderr)
+
+    @unittest.skipIf(MPIRUN == "none", "built without PETSc, SLEPc, MPI or Scotch")
+    def test_several_processes(self):
+        self.build(self.configure(SOURCE / "examples/distributed", "distributed"), "distributed")
+        carat, mesh = self.prefix / "bin/carat", self.folder / "ball.vtu"
+        self.succeed(carat, "generate", "ball-voronoi", "--level", 2, "-o", mesh)
+        self.succeed(carat, "partition", mesh, "-n", 4, "-o", self.folder / "parts")
+        os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                          OMPI_MCA_rmaps_base_oversubscribe="1")
+        program = self.folder / "distributed/poisson"
+        self.assertEqual(self.succeed(MPIRUN, "-np", 4, program, self.folder / "parts/mesh.pvtu"),
+                         self.sample_run("distributed/poisson"))
+        failed = run(MPIRUN, "-np", 3, program, self.folder / "parts/mesh.pvtu")
+        self.assertEqual(failed.returncode, 3, failed.stderr)
+        self.assertEqual(failed.stderr.count("poisson: "), 1, failed.stderr)
 
     def test_a_missing_component_is_named(self):
         failed = self.core_only("volume", "core;volume")
@@ -118,4 +134,4 @@ class Package(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[7:], verbosity=2)
+    unittest.main(argv=sys.argv[:1] + sys.argv[8:], verbosity=2)
