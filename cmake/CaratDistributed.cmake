@@ -1,5 +1,14 @@
-# What is for several processes: carat::partition where Scotch is found, and with PETSc, SLEPc and
-# MPI also carat::distributed. Without them everything else is built.
+# What is for several processes: carat::parts, which needs nothing; carat::partition where Scotch is
+# found, and with PETSc, SLEPc and MPI also carat::distributed. Without them everything else is built.
+add_library(carat_parts STATIC src/carat/distributed/message.cpp src/carat/distributed/part_data.cpp
+                               src/carat/distributed/part_file.cpp)
+add_library(carat::parts ALIAS carat_parts)
+target_sources(carat_parts PUBLIC FILE_SET HEADERS BASE_DIRS src
+               FILES src/carat/distributed/part_data.h src/carat/distributed/part_file.h)
+target_link_libraries(carat_parts PUBLIC carat_core)
+set_target_properties(carat_parts PROPERTIES EXPORT_NAME parts POSITION_INDEPENDENT_CODE ON)
+carat_warnings(carat_parts)
+
 set(CARAT_HAS_PARTITION OFF)
 set(CARAT_HAS_DISTRIBUTED OFF)
 if(NOT CARAT_WITH_DISTRIBUTED)
@@ -32,15 +41,15 @@ if(PETSC_FOUND AND Scotch_FOUND AND CARAT_BUILD_IO)
   # The flags of Debian's own build are not for ours.
   set_property(TARGET PkgConfig::PETSC PROPERTY INTERFACE_COMPILE_OPTIONS)
   file(GLOB distributed_sources CONFIGURE_DEPENDS src/carat/distributed/*.cpp)
-  list(FILTER distributed_sources EXCLUDE REGEX "/partition.cpp$")
+  list(FILTER distributed_sources EXCLUDE REGEX "/(partition|message|part_data|part_file).cpp$")
   add_library(carat_distributed STATIC ${distributed_sources})
   add_library(carat::distributed ALIAS carat_distributed)
   # The other headers show PETSc or MPI.
   target_sources(carat_distributed PUBLIC FILE_SET HEADERS BASE_DIRS src
                  FILES src/carat/distributed/eigenmodes.h src/carat/distributed/heat_geodesics.h
-                       src/carat/distributed/part_data.h src/carat/distributed/poisson.h
+                       src/carat/distributed/poisson.h
                        src/carat/distributed/processes.h src/carat/distributed/read_parts.h)
-  target_link_libraries(carat_distributed PUBLIC carat_core carat_io carat_partition
+  target_link_libraries(carat_distributed PUBLIC carat_parts carat_io carat_partition
                         PRIVATE PkgConfig::PETSC MPI::MPI_CXX)
   set_target_properties(carat_distributed PROPERTIES EXPORT_NAME distributed)
   carat_warnings(carat_distributed)

@@ -20,7 +20,7 @@ if(CARAT_BUILD_IO)
   install(EXPORT caratIoTargets NAMESPACE carat:: DESTINATION ${config_dir})
 endif()
 if(CARAT_HAS_DISTRIBUTED)
-  install(TARGETS carat_distributed carat_partition EXPORT caratDistributedTargets
+  install(TARGETS carat_distributed carat_partition carat_parts EXPORT caratDistributedTargets
           FILE_SET HEADERS)
   install(EXPORT caratDistributedTargets NAMESPACE carat:: DESTINATION ${config_dir})
   install(FILES cmake/FindScotch.cmake DESTINATION ${config_dir})

@@ -1,5 +1,6 @@
 #include "carat/distributed/message.h"
-#include "same_parts.h"
+#include "parts.h"
+#include "support/same_parts.h"
 
 namespace carat::test {
 namespace {

@@ -1,4 +1,5 @@
 #include "carat/base/error.h"
+#include "carat/distributed/part_file.h"
 #include "carat/distributed/read_parts.h"
 #include "io/foam_case.h"
 #include "io/piece_files.h"
@@ -150,6 +151,48 @@ TEST(ReadParts, a_processor_of_openfoam_that_is_damaged_is_an_error_in_all_proce
     write_bytes(faces, read_bytes(faces).substr(0, 700));
   });
   expect_says(failure<IoError>(folder / "case"), last);
+}
+
+template <class Mesh>
+void check_part_file(const Mesh& mesh) {
+  for_cuts(mesh, [&](const std::vector<Index>& cut) {
+    const SharedFolder folder;
+    first_alone([&] {
+      write_part_file(folder / "mesh.cparts", sample_data(mesh), divide(mesh, n_processes(), cut));
+    });
+    EXPECT_TRUE(is_in_parts(folder / "mesh.cparts"));
+    expect_same(std::get<PartData<Mesh>>(read_parts(folder / "mesh.cparts")),
+                expected_part(mesh, cut));
+  });
+}
+
+TEST(ReadParts, a_part_file_gives_every_process_its_part) {
+  check_part_file(generate_mesh("sphere-hexagons", {.level = 1}));
+  check_part_file(generate_volume("ball-voronoi", {.level = 0}));
+}
+
+TEST(ReadParts, a_damaged_part_is_an_error_in_all_processes) {
+  const SharedFolder folder;
+  const auto path = folder / "mesh.cparts";
+  const PolygonMesh mesh = generate_mesh("plane-quads", {.level = 1});
+  const auto write = [&](Index n) {
+    write_part_file(path, sample_data(mesh), divide(mesh, n, in_blocks(mesh.n_faces(), n)));
+  };
+  first_alone([&] {
+    write(n_processes());
+    std::string bytes = read_bytes(path);
+    bytes[bytes.size() - 100] ^= 1;
+    write_bytes(path, bytes);
+  });
+  expect_says(failure<IoError>(path), "part " + std::to_string(n_processes() - 1) + " is damaged");
+  first_alone([&] {
+    const std::string bytes = read_bytes(path);
+    write_bytes(path, std::string_view(bytes).substr(0, bytes.size() - 1));
+  });
+  expect_says(failure<IoError>(path), "beyond the end");
+  first_alone([&] { write(n_processes() + 2); });
+  expect_says(failure<InvalidOption>(path), "mpirun -np " + std::to_string(n_processes() + 2));
+  expect_says(failure<IoError>(folder / "no.cparts"), "No such file");
 }
 
 TEST(ReadParts, another_number_of_parts_is_refused_with_both_remedies) {

@@ -62,6 +62,61 @@ void take(Message& message, PartNumbers& numbers) {
   take(message, numbers.own_interfaces);
 }
 
+void put(Message& message, const std::vector<Field>& fields) {
+  message.put(static_cast<std::uint64_t>(fields.size()));
+  for (const Field& field : fields) {
+    message.put_list(field.name);
+    message.put(field.components);
+    message.put_list(field.values);
+  }
+}
+
+void take(Message& message, std::vector<Field>& fields) {
+  std::uint64_t n = 0;
+  message.take(n);
+  message.require(n, 1);
+  fields.clear();
+  for (std::uint64_t k = 0; k < n; ++k) {
+    Field field;
+    message.take_list(field.name);
+    message.take(field.components);
+    message.take_list(field.values);
+    fields.push_back(std::move(field));
+  }
+}
+
+template <class Mesh>
+void put_data(Message& message, const PartData<Mesh>& data) {
+  put(message, data.part);
+  for (const std::vector<Field>* fields :
+       {&data.fields.vertex, &data.fields.face, &data.fields.cell})
+    put(message, *fields);
+  message.put(static_cast<std::uint64_t>(data.patches.size()));
+  for (const BoundaryPatch& patch : data.patches) {
+    message.put_list(patch.name);
+    message.put_list(patch.type);
+    message.put_list(patch.faces);
+  }
+}
+
+template <class Mesh>
+void take_data(Message& message, PartData<Mesh>& data) {
+  take(message, data.part);
+  for (std::vector<Field>* fields : {&data.fields.vertex, &data.fields.face, &data.fields.cell})
+    take(message, *fields);
+  std::uint64_t n = 0;
+  message.take(n);
+  message.require(n, 1);
+  data.patches.clear();
+  for (std::uint64_t k = 0; k < n; ++k) {
+    BoundaryPatch patch;
+    message.take_list(patch.name);
+    message.take_list(patch.type);
+    message.take_list(patch.faces);
+    data.patches.push_back(std::move(patch));
+  }
+}
+
 }  // namespace
 
 void Message::put_bytes(const void* data, std::size_t size) {
@@ -117,5 +172,10 @@ void take(Message& message, MeshPart<PolyhedralMesh>& part) {
   part.mesh = PolyhedralMesh::from_face_cells(std::move(points), std::move(faces), std::move(cells),
                                               std::move(face_cells));
 }
+
+void put(Message& message, const PartData<PolygonMesh>& data) { put_data(message, data); }
+void put(Message& message, const PartData<PolyhedralMesh>& data) { put_data(message, data); }
+void take(Message& message, PartData<PolygonMesh>& data) { take_data(message, data); }
+void take(Message& message, PartData<PolyhedralMesh>& data) { take_data(message, data); }
 
 }  // namespace carat

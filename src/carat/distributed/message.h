@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "carat/mesh/mesh_part.h"
+#include "carat/distributed/part_data.h"
 
 namespace carat {
 
@@ -66,5 +66,9 @@ void put(Message& message, const MeshPart<PolygonMesh>& part);
 void put(Message& message, const MeshPart<PolyhedralMesh>& part);
 void take(Message& message, MeshPart<PolygonMesh>& part);
 void take(Message& message, MeshPart<PolyhedralMesh>& part);
+void put(Message& message, const PartData<PolygonMesh>& data);
+void put(Message& message, const PartData<PolyhedralMesh>& data);
+void take(Message& message, PartData<PolygonMesh>& data);
+void take(Message& message, PartData<PolyhedralMesh>& data);
 
 }  // namespace carat

@@ -18,6 +18,12 @@ struct PartData {
   std::vector<BoundaryPatch> patches;
 };
 
+/// A part of a mesh with what belongs to it. Cost: that of the part, and the patches' of the mesh.
+PartData<PolygonMesh> part_data_of(const SurfaceData& data, const MeshDivision& division,
+                                   Index part);
+PartData<PolyhedralMesh> part_data_of(const VolumeData& data, const MeshDivision& division,
+                                      Index part);
+
 using AnyPartData = std::variant<PartData<PolygonMesh>, PartData<PolyhedralMesh>>;
 
 }  // namespace carat

@@ -7,6 +7,7 @@
 #include "carat/base/error.h"
 #include "carat/distributed/exchange.h"
 #include "carat/distributed/mesh_pieces.h"
+#include "carat/distributed/part_file.h"
 #include "carat/io/openfoam.h"
 #include "carat/io/parallel_vtk.h"
 
@@ -56,15 +57,24 @@ AnyPartData join(AnyMeshPiece piece) {
 }  // namespace
 
 bool is_in_parts(const fs::path& path) {
-  return is_parallel_vtk(path) || !foam_processors(path).empty();
+  return is_parallel_vtk(path) || path.extension() == ".cparts" || !foam_processors(path).empty();
 }
 
 AnyPartData read_parts(const fs::path& path) {
+  if (path.extension() == ".cparts") {
+    AnyPartData data;
+    together([&] {
+      check_number_of_parts(path, static_cast<std::size_t>(count_parts(path)));
+      data = read_part(path, own_rank());
+    });
+    return data;
+  }
   AnyMeshPiece piece;
   together([&] {
     if (!is_in_parts(path))
-      throw IoError(path.string() +
-                    ": is no mesh in parts; divide it first (carat partition MESH -n N -o DIR)");
+      throw IoError(
+          path.string() +
+          ": is no mesh in parts; divide it first (carat partition MESH -n N -o mesh.cparts)");
     const bool vtk = is_parallel_vtk(path);
     const std::vector<fs::path> files = vtk ? parallel_pieces(path) : foam_processors(path);
     check_number_of_parts(path, files.size());

@@ -1,10 +1,12 @@
 #pragma once
 // Whether two parts of a mesh are the same in every bit.
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 
 #include "carat/distributed/part_data.h"
-#include "parts.h"
+#include "support/mesh_parts.h"
 
 namespace carat::test {
 
