@@ -18,6 +18,33 @@ class Partition(CaratTest):
             self.assertEqual(here[f"{element}s"],
                              part[f"own_{element}s"] + part[f"halo_{element}s"])
 
+    def test_a_folder_holds_the_mesh_with_its_fields(self):
+        self.generate("ball-voronoi", 1, "ball.vtu")
+        self.succeed("geodesics", "ball.vtu", "--source", 0, "-o", "distance.vtu")
+        self.assertEqual(self.report("partition", "distance.vtu", "-n", 3, "-o", "parts")["output"],
+                         "parts/mesh.pvtu")
+        whole, joined = (self.report("info", name) for name in ("distance.vtu", "parts/mesh.pvtu"))
+        self.assertEqual(joined["sizes"], whole["sizes"])
+        names = {where: [field["name"] for field in fields]
+                 for where, fields in joined["fields"].items()}
+        self.assertEqual(names, {"vertex": ["row", "component", "distance"],
+                                 "cell": ["part", "direction"]})
+        self.assertEqual([joined["fields"]["vertex"][2], joined["fields"]["cell"][1]],
+                         [whole["fields"]["vertex"][0], whole["fields"]["cell"][0]])
+        self.succeed("convert", "parts/mesh.pvtu", "joined.vtu")
+        self.succeed("poisson", "parts/mesh.pvtu", "--rhs", 1, "--dirichlet", 0)
+        # Parts of parts: the numbers are those of the mesh that is divided.
+        self.succeed("partition", "parts/mesh.pvtu", "-n", 2, "-o", "again")
+        self.assertEqual(self.report("info", "again/mesh.pvtu")["sizes"], whole["sizes"])
+
+    def test_one_file(self):
+        mesh = self.generate("plane-quads", 2)
+        report = self.report("partition", mesh, "-n", 3, "-o", "mesh.cparts")
+        self.assertEqual(report["output"], "mesh.cparts")
+        self.assertEqual(len(report["parts"]), 3)
+        self.assertEqual(sorted(self.files()), sorted([mesh, "mesh.cparts"]))
+        self.fail_with(3, "partition", mesh, "-n", 3, "-o", "no/mesh.cparts", says="no")
+
     def test_surfaces(self):
         self.check(self.generate("sphere-hexagons", 2), "face", ".vtp", 3)
 
