@@ -30,6 +30,25 @@ TEST(MatrixMarket, WritesAllEntriesOfAGeneralMatrix) {
   EXPECT_EQ(folder.n_files(), 1u);
 }
 
+TEST(MatrixMarket, TakesEntriesOneAfterTheOther) {
+  const TemporaryFolder folder;
+  const auto write = [&](std::int64_t n_entries) {
+    write_matrix_market(folder / "a.mtx", 3'000'000'000, 2, n_entries, MatrixSymmetry::General, "G",
+                        [](const PutEntry& put) {
+                          put(0, 1, 0.5);
+                          put(2'999'999'999, 0, -1);
+                        });
+  };
+  write(2);
+  const std::string expected =
+      "%%MatrixMarket matrix coordinate real general\n% G\n3000000000 2 2\n"
+      "1 2 0.5\n3000000000 1 -1\n";
+  EXPECT_EQ(read_bytes(folder / "a.mtx"), expected);
+  EXPECT_THROW(write(3), InvalidOption);
+  EXPECT_EQ(read_bytes(folder / "a.mtx"), expected);
+  EXPECT_EQ(folder.n_files(), 1u);
+}
+
 TEST(MatrixMarket, WritesTheLowerTriangleOfASymmetricMatrix) {
   const TemporaryFolder folder;
   write_matrix_market(folder / "a.mtx", sample(), MatrixSymmetry::Symmetric);

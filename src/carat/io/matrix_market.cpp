@@ -32,31 +32,41 @@ void for_each_entry(const SparseMatrix& matrix, MatrixSymmetry symmetry, Visit&&
 
 void write_matrix_market(const std::filesystem::path& path, const SparseMatrix& matrix,
                          MatrixSymmetry symmetry, std::string_view comment) {
-  const bool symmetric = symmetry == MatrixSymmetry::Symmetric;
-  if (symmetric && matrix.rows() != matrix.cols())
-    throw InvalidOption(path.string() + ": a symmetric matrix must be square, this one is " +
-                        std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols()) +
-                        "; write it as general");
   std::int64_t n_entries = 0;
-  for_each_entry(matrix, symmetry, [&](Index row, Index column, double value) {
-    ++n_entries;
-    if (!std::isfinite(value))
-      throw InvalidOption(path.string() + ": entry (" + std::to_string(row) + ", " +
-                              std::to_string(column) + ") is " + std::to_string(value) +
-                              "; only finite entries can be written",
-                          {row, column});
-  });
+  for_each_entry(matrix, symmetry, [&](Index, Index, double) { ++n_entries; });
+  write_matrix_market(path, matrix.rows(), matrix.cols(), n_entries, symmetry, comment,
+                      [&](const PutEntry& put) { for_each_entry(matrix, symmetry, put); });
+}
+
+void write_matrix_market(const std::filesystem::path& path, std::int64_t rows, std::int64_t columns,
+                         std::int64_t n_entries, MatrixSymmetry symmetry, std::string_view comment,
+                         const std::function<void(const PutEntry& put)>& produce) {
+  const bool symmetric = symmetry == MatrixSymmetry::Symmetric;
+  if (symmetric && rows != columns)
+    throw InvalidOption(path.string() + ": a symmetric matrix must be square, this one is " +
+                        std::to_string(rows) + " x " + std::to_string(columns) +
+                        "; write it as general");
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     try {
       detail::BufferedWriter out(temporary);
       out.put("%%MatrixMarket matrix coordinate real ");
       out.put(symmetric ? "symmetric\n" : "general\n");
       put_comment(out, comment);
-      out.put(matrix.rows()).put(' ').put(matrix.cols()).put(' ').put(n_entries).put('\n');
-      for_each_entry(matrix, symmetry, [&](Index row, Index column, double value) {
-        out.put(std::int64_t{row} + 1).put(' ').put(std::int64_t{column} + 1);
+      out.put(rows).put(' ').put(columns).put(' ').put(n_entries).put('\n');
+      std::int64_t n_put = 0;
+      produce([&](std::int64_t row, std::int64_t column, double value) {
+        if (!std::isfinite(value))
+          throw InvalidOption(path.string() + ": entry (" + std::to_string(row) + ", " +
+                                  std::to_string(column) + ") is " + std::to_string(value) +
+                                  "; only finite entries can be written",
+                              {static_cast<Index>(row), static_cast<Index>(column)});
+        ++n_put;
+        out.put(row + 1).put(' ').put(column + 1);
         out.put(' ').put(value).put('\n');
       });
+      if (n_put != n_entries)
+        throw InvalidOption(path.string() + ": " + std::to_string(n_put) + " entries instead of " +
+                            std::to_string(n_entries));
       out.close();
     } catch (const IoError& error) {
       throw IoError(path.string() + ": " + error.what());

@@ -1,7 +1,9 @@
 #pragma once
 // Sparse matrices as Matrix Market files.
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 #include "carat/base/types.h"
@@ -22,5 +24,16 @@ enum class MatrixSymmetry {
 void write_matrix_market(const std::filesystem::path& path, const SparseMatrix& matrix,
                          MatrixSymmetry symmetry = MatrixSymmetry::General,
                          std::string_view comment = {});
+
+/// Takes the next entry, numbered from 0.
+using PutEntry = std::function<void(std::int64_t row, std::int64_t column, double value)>;
+
+/// The same of entries that come one after the other, so that the matrix need not fit into memory.
+/// \param n_entries  how many are put; of a symmetric matrix those of the lower triangle
+/// \param produce    calls its argument once an entry
+/// \throws  as above; InvalidOption also for another number of entries
+void write_matrix_market(const std::filesystem::path& path, std::int64_t rows, std::int64_t columns,
+                         std::int64_t n_entries, MatrixSymmetry symmetry, std::string_view comment,
+                         const std::function<void(const PutEntry& put)>& produce);
 
 }  // namespace carat
