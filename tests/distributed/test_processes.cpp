@@ -23,6 +23,29 @@ TEST(Processes, an_error_of_one_is_thrown_by_all) {
   EXPECT_NO_THROW(together([] {}));
 }
 
+TEST(Processes, errors_keep_their_elements_and_name_a_process_only_where_others_are_well) {
+  try {
+    together([] { throw DegenerateElement("all", {3, 5}); });
+    FAIL();
+  } catch (const DegenerateElement& error) {
+    EXPECT_EQ(error.what(), std::string("all"));
+    EXPECT_EQ(error.elements(), (std::vector<Index>{3, 5}));
+  }
+}
+
+TEST(Processes, the_first_may_work_alone) {
+  int n_runs = 0;
+  on_first([&] { ++n_runs; });
+  EXPECT_EQ(n_runs, rank() == 0 ? 1 : 0);
+  try {
+    on_first([] { throw IoError("no file", {7}); });
+    FAIL();
+  } catch (const Shared<IoError>& error) {
+    EXPECT_EQ(error.what(), std::string("no file"));
+    EXPECT_EQ(error.elements(), std::vector<Index>{7});
+  }
+}
+
 TEST(Processes, programs_end_with_one_description) {
   int described = 0;
   const int code = run_processes(
@@ -44,6 +67,7 @@ TEST(Processes, sums_and_maxima_are_of_all) {
   EXPECT_EQ(sum_of_all(1.0), n);
   EXPECT_EQ(sum_of_all(std::int64_t{rank()}), n * (n - 1) / 2);
   EXPECT_EQ(sum_of_all(std::vector<double>{1, 2}), (std::vector<double>{1.0 * n, 2.0 * n}));
+  EXPECT_EQ(sum_of_all(std::vector<std::int64_t>{1, 2}), (std::vector<std::int64_t>{n, 2 * n}));
   EXPECT_EQ(largest_of_all(static_cast<double>(rank())), n - 1);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "carat/distributed/componentwise.h"
+#include "carat/distributed/part_fields.h"
 #include "carat/distributed/poisson.h"
 #include "carat/distributed/processes.h"
 #include "carat/operators/common.h"
@@ -15,13 +16,6 @@ namespace {
 
 // As in apps/heat_geodesics.cpp.
 constexpr double kSourceHeat = 1e250;
-
-double longest_edge(const PolygonMesh& mesh) {
-  double longest = 0;
-  for (const auto& [v1, v2] : mesh.edges().vertices)
-    longest = std::max(longest, (mesh.point(v2) - mesh.point(v1)).norm());
-  return longest;
-}
 
 }  // namespace
 
@@ -36,6 +30,7 @@ struct DistributedGeodesics::Impl {
   PartExchange exchange;
   Discretization discretization;  // the part's
   DistributedPoisson poisson;
+  std::unique_ptr<PartFields> fields;  // for directions of elements
   double time_step = 0;
   PetscMatrix heat;
   Vector heat_diagonal;  // of the own rows
@@ -83,10 +78,12 @@ std::vector<DistributedGeodesics::Impl::OwnSource> DistributedGeodesics::Impl::o
 }
 
 template <class Mesh>
-void DistributedGeodesics::set_up(const MeshPart<Mesh>& part, const PolygonMesh& edges,
-                                  Discretization&& discretization,
+void DistributedGeodesics::set_up(const MeshPart<Mesh>& part, Discretization&& discretization,
                                   const HeatGeodesicsOptions& options) {
-  double longest = 0;
+  const EdgeLengths edges = edge_lengths(part);
+  const double h = options.length == TimeStepLength::MaxEdge ? edges.longest
+                   : edges.count > 0 ? edges.sum / static_cast<double>(edges.count)
+                                     : 0;
   together([&] {
     if (!(options.t_coef > 0) || !std::isfinite(options.t_coef))
       throw InvalidOption("t_coef is " + std::to_string(options.t_coef) +
@@ -95,17 +92,18 @@ void DistributedGeodesics::set_up(const MeshPart<Mesh>& part, const PolygonMesh&
     if (discretization.gradient_dimension == 0)
       throw InvalidOption("heat geodesics need a gradient: the operator " + discretization.name +
                           " defines none, or it was not asked for (DiscretizationParts::Gradient)");
-    if (options.length != TimeStepLength::MaxEdge || options.directions != HeatDirections::Samples)
-      throw InvalidOption(
-          "the mean edge and directions of elements are not for meshes in parts; leave them out");
-    longest = longest_edge(edges);
+    if (options.directions == HeatDirections::Elements)
+      if (const std::string reason = discretization.lacks_element_directions(); !reason.empty())
+        throw InvalidOption("the operator " + discretization.name +
+                            " gives no directions of elements: " + reason);
   });
-  longest = largest_of_all(longest);
   DistributedPoisson poisson(part, discretization);
   impl_ = std::make_unique<Impl>(part.numbers, std::move(discretization), std::move(poisson));
-  impl_->time_step = options.t_coef * longest * longest;
+  impl_->time_step = options.t_coef * h * h;
   Impl& it = *impl_;
   const Discretization& d = it.discretization;
+  if (options.directions == HeatDirections::Elements)
+    it.fields = std::make_unique<PartFields>(it.numbers, d);
   SparseMatrix heat;
   together([&] { heat = d.mass + it.time_step * d.stiffness; });
   it.heat = it.exchange.sum(heat);
@@ -128,19 +126,21 @@ void DistributedGeodesics::set_up(const MeshPart<Mesh>& part, const PolygonMesh&
 DistributedGeodesics::DistributedGeodesics(const MeshPart<PolygonMesh>& part,
                                            Discretization discretization,
                                            const HeatGeodesicsOptions& options) {
-  set_up(part, part.mesh, std::move(discretization), options);
+  set_up(part, std::move(discretization), options);
 }
 
 DistributedGeodesics::DistributedGeodesics(const MeshPart<PolyhedralMesh>& part,
                                            Discretization discretization,
                                            const HeatGeodesicsOptions& options) {
-  set_up(part, part.mesh.face_mesh(), std::move(discretization), options);
+  set_up(part, std::move(discretization), options);
 }
 
 DistributedGeodesics::~DistributedGeodesics() = default;
 DistributedGeodesics::DistributedGeodesics(DistributedGeodesics&&) noexcept = default;
 
 double DistributedGeodesics::time_step() const { return impl_->time_step; }
+
+const Discretization& DistributedGeodesics::discretization() const { return impl_->discretization; }
 
 GeodesicDistance DistributedGeodesics::distance(const std::vector<GeodesicSource>& sources) const {
   const Impl& it = *impl_;
@@ -167,20 +167,22 @@ GeodesicDistance DistributedGeodesics::distance(const std::vector<GeodesicSource
   const Vector here = it.exchange.to_part(values);
 
   GeodesicDistance result;
-  Vector divergence;
+  Vector directions, divergence;
   std::int64_t unresolved = 0;
   const auto is_reached = [&](Index v) {
     return component[v] >= 0 && n_sources[static_cast<std::size_t>(component[v])] > 0;
   };
+  together([&] { directions = d.gradient * here; });
+  Vector of_elements;
+  if (it.fields) of_elements = it.fields->element_directions(directions);
   together([&] {
-    Vector directions = d.gradient * here;
     const std::vector<bool> vanished = d.normalise_samples(directions);
     for (Index s = 0; s < d.n_samples(); ++s) {
       if (!vanished[static_cast<std::size_t>(s)] || !(d.sample_measure[s] > 0)) continue;
       const SparseMatrix::InnerIterator entry(d.gradient, d.first_row(s));
       if (entry && is_reached(static_cast<Index>(entry.col()))) ++unresolved;
     }
-    divergence = d.apply_divergence(directions);
+    divergence = d.apply_divergence(it.fields ? of_elements : directions);
   });
   result.unresolved_samples = static_cast<Index>(sum_of_all(unresolved));
   result.values = it.poisson.solve_integrated(divergence).values;

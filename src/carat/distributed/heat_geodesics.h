@@ -14,9 +14,9 @@ namespace carat {
 /// DistributedPoisson.
 class DistributedGeodesics {
  public:
-  /// Collective. \param discretization  of discretize_part(), with its gradient
-  /// \throws InvalidOption, SolverFailure  as HeatGeodesics, Shared; the mean edge, and directions
-  ///                                       of elements, which are for whole meshes
+  /// Collective. \param discretization  of discretize_part(), with its gradient, for directions
+  ///                                 of elements also its frames
+  /// \throws InvalidOption, SolverFailure  as HeatGeodesics, Shared
   DistributedGeodesics(const MeshPart<PolygonMesh>& part, Discretization discretization,
                        const HeatGeodesicsOptions& options = {});
   DistributedGeodesics(const MeshPart<PolyhedralMesh>& part, Discretization discretization,
@@ -28,11 +28,12 @@ class DistributedGeodesics {
   /// \return values and unreachable vertices of the part; unresolved samples of the whole mesh
   GeodesicDistance distance(const std::vector<GeodesicSource>& sources) const;
   double time_step() const;
+  const Discretization& discretization() const;  ///< the part's
 
  private:
   struct Impl;
   template <class Mesh>
-  void set_up(const MeshPart<Mesh>& part, const PolygonMesh& edges, Discretization&& discretization,
+  void set_up(const MeshPart<Mesh>& part, Discretization&& discretization,
               const HeatGeodesicsOptions& options);
   std::unique_ptr<Impl> impl_;
 };

@@ -74,9 +74,13 @@ BoundaryConditions own_conditions(const BoundaryConditions& all, const PartNumbe
 
 struct DistributedPoisson::Impl {
   explicit Impl(const PartNumbers& numbers)
-      : exchange(numbers), n_components(static_cast<std::size_t>(numbers.n_components)) {}
+      : exchange(numbers),
+        first_row(numbers.first_row),
+        n_vertices(numbers.n_vertices),
+        n_components(static_cast<std::size_t>(numbers.n_components)) {}
 
   PartExchange exchange;
+  Index first_row, n_vertices;
   std::size_t n_components;
   std::shared_ptr<const SymmetricOperator> mass;  // the part's
   std::vector<Index> part_components;
@@ -99,6 +103,11 @@ struct DistributedPoisson::Impl {
       if (components[row] >= 0)
         sums[static_cast<std::size_t>(components[row])] += value(static_cast<Index>(row));
     return sum_of_all(std::move(sums));
+  }
+  /// Place of a vertex of the part among the own rows; -1: another process's.
+  Index own_row(Index v) const {
+    const Index row = exchange.rows()[static_cast<std::size_t>(v)] - first_row;
+    return row >= 0 && row < exchange.n_own() ? row : -1;
   }
   bool floats(std::size_t row) const {
     return components[row] >= 0 && floating[static_cast<std::size_t>(components[row])];
@@ -270,6 +279,36 @@ DistributedPoisson::~DistributedPoisson() = default;
 DistributedPoisson::DistributedPoisson(DistributedPoisson&&) noexcept = default;
 
 const std::vector<Index>& DistributedPoisson::components() const { return impl_->part_components; }
+
+void DistributedPoisson::remove_floating_means(Vector& function) const {
+  const Impl& it = *impl_;
+  Vector own(it.exchange.n_own());
+  for (Index v = 0; v < function.size(); ++v)
+    if (const Index row = it.own_row(v); row >= 0) own[row] = function[v];
+  const std::vector<double> mean =
+      it.by_component([&](Index row) { return it.vertex_mass[row] * own[row]; });
+  for (Index v = 0; v < function.size(); ++v)
+    if (const Index c = it.part_components[static_cast<std::size_t>(v)];
+        c >= 0 && it.floating[static_cast<std::size_t>(c)])
+      function[v] -= mean[static_cast<std::size_t>(c)] / it.measure[static_cast<std::size_t>(c)];
+}
+
+ErrorNorms DistributedPoisson::norms(const Vector& error) const {
+  const Impl& it = *impl_;
+  double squares = 0, largest = 0;
+  for (Index v = 0; v < error.size(); ++v) {
+    if (it.own_row(v) < 0) continue;
+    squares += error[v] * error[v];
+    largest = std::max(largest, std::abs(error[v]));
+  }
+  const double energy = error.size() > 0 ? error.dot(*it.mass * error) : 0.0;
+  const std::vector<double> sums = sum_of_all(std::vector<double>{squares, energy});
+  ErrorNorms norms;
+  if (it.n_vertices > 0) norms.rmse = std::sqrt(sums[0] / it.n_vertices);
+  norms.l2 = std::sqrt(std::max(0.0, sums[1]));
+  norms.max = largest_of_all(largest);
+  return norms;
+}
 
 PoissonSolution DistributedPoisson::solve(const Vector& f) const {
   Vector load;

@@ -41,6 +41,13 @@ class DistributedPoisson {
   /// Collective. \param load  what the part brings to the integrated right-hand side
   PoissonSolution solve_integrated(const Vector& load) const;
 
+  /// Collective. Takes the mean by mass off a function in every floating component, as solutions
+  /// have it. \param function  at the part's vertices
+  void remove_floating_means(Vector& function) const;
+  /// Collective. error_norms() of the whole mesh; vertices of no element count as without an error.
+  /// \param error  at the part's vertices
+  ErrorNorms norms(const Vector& error) const;
+
   /// Component of each of the part's vertices; -1: in no element with a measure.
   const std::vector<Index>& components() const;
 

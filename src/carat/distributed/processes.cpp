@@ -25,20 +25,20 @@ ErrorKind kind_of(const std::exception& error) {
   return dynamic_cast<const std::bad_alloc*>(&error) ? kMemory : kOther;
 }
 
-[[noreturn]] void throw_shared(int kind, const std::string& message) {
+[[noreturn]] void throw_shared(int kind, const std::string& message, std::vector<Index> elements) {
   switch (kind) {
     case kMesh:
-      throw Shared<InvalidMesh>(message);
+      throw Shared<InvalidMesh>(message, std::move(elements));
     case kDegenerate:
-      throw Shared<DegenerateElement>(message);
+      throw Shared<DegenerateElement>(message, std::move(elements));
     case kOption:
-      throw Shared<InvalidOption>(message);
+      throw Shared<InvalidOption>(message, std::move(elements));
     case kFile:
-      throw Shared<IoError>(message);
+      throw Shared<IoError>(message, std::move(elements));
     case kSolver:
-      throw Shared<SolverFailure>(message);
+      throw Shared<SolverFailure>(message, std::move(elements));
     default:
-      throw Shared<Error>(message);
+      throw Shared<Error>(message, std::move(elements));
   }
 }
 
@@ -50,6 +50,41 @@ template <class Value>
 Value reduce(Value value, MPI_Datatype type, MPI_Op operation) {
   check_mpi(MPI_Allreduce(MPI_IN_PLACE, &value, 1, type, operation, PETSC_COMM_WORLD));
   return value;
+}
+
+/// Of a process, to all others.
+template <class List>
+void broadcast(List& list, MPI_Datatype type, int from) {
+  int length = static_cast<int>(list.size());
+  check_mpi(MPI_Bcast(&length, 1, MPI_INT, from, PETSC_COMM_WORLD));
+  list.resize(static_cast<std::size_t>(length));
+  check_mpi(MPI_Bcast(list.data(), length, type, from, PETSC_COMM_WORLD));
+}
+
+/// Runs `work` in this process, if it is one of those that work; what the first process throws all
+/// throw.
+/// \param names_process  the message tells whose it is, where not all of several met an error
+void share(const std::function<void()>& work, bool works, bool names_process) {
+  int kind = kNone;
+  std::string message;
+  std::vector<Index> elements;
+  try {
+    if (works) work();
+  } catch (const std::exception& error) {
+    kind = kind_of(error);
+    message = kind == kMemory ? "out of memory; use more processes or machines" : error.what();
+    if (const auto* const own = dynamic_cast<const Error*>(&error)) elements = own->elements();
+  }
+  const int rank = own_rank();
+  const int first = reduce(kind == kNone ? INT_MAX : rank, MPI_INT, MPI_MIN);
+  if (first == INT_MAX) return;
+  const int n_failed = reduce(kind == kNone ? 0 : 1, MPI_INT, MPI_SUM);
+  if (names_process && n_failed < n_processes())
+    message = "process " + std::to_string(rank) + ": " + message;
+  check_mpi(MPI_Bcast(&kind, 1, MPI_INT, first, PETSC_COMM_WORLD));
+  broadcast(message, MPI_CHAR, first);
+  broadcast(elements, MPI_INT32_T, first);
+  throw_shared(kind, message, std::move(elements));
 }
 
 }  // namespace
@@ -81,28 +116,9 @@ Processes::Processes(std::vector<std::string> arguments) : arguments_(std::move(
 
 Processes::~Processes() { SlepcFinalize(); }
 
-void together(const std::function<void()>& work) {
-  int rank = 0, size = 1;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  int kind = kNone;
-  std::string message;
-  try {
-    work();
-  } catch (const std::exception& error) {
-    kind = kind_of(error);
-    message = kind == kMemory ? "out of memory; use more processes or machines" : error.what();
-  }
-  const int first = reduce(kind == kNone ? INT_MAX : rank, MPI_INT, MPI_MIN);
-  if (first == INT_MAX) return;
-  if (size > 1) message = "process " + std::to_string(rank) + ": " + message;
-  int length = static_cast<int>(message.size());
-  check_mpi(MPI_Bcast(&kind, 1, MPI_INT, first, PETSC_COMM_WORLD));
-  check_mpi(MPI_Bcast(&length, 1, MPI_INT, first, PETSC_COMM_WORLD));
-  message.resize(static_cast<std::size_t>(length));
-  check_mpi(MPI_Bcast(message.data(), length, MPI_CHAR, first, PETSC_COMM_WORLD));
-  throw_shared(kind, message);
-}
+void together(const std::function<void()>& work) { share(work, true, true); }
+
+void on_first(const std::function<void()>& work) { share(work, own_rank() == 0, false); }
 
 void require_countable(const char* what, std::uint64_t n, std::uint64_t limit) {
   if (n <= limit) return;
@@ -136,6 +152,11 @@ void end_job(int exit_code) {
 
 double sum_of_all(double value) { return reduce(value, MPI_DOUBLE, MPI_SUM); }
 std::int64_t sum_of_all(std::int64_t value) { return reduce(value, MPI_INT64_T, MPI_SUM); }
+std::vector<std::int64_t> sum_of_all(std::vector<std::int64_t> values) {
+  check_mpi(MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_INT64_T,
+                          MPI_SUM, PETSC_COMM_WORLD));
+  return values;
+}
 std::vector<double> sum_of_all(std::vector<double> values) {
   check_mpi(MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE,
                           MPI_SUM, PETSC_COMM_WORLD));

@@ -30,6 +30,10 @@ class Processes {
   std::vector<char*> pointers_;
 };
 
+/// This process among those of the job, and how many there are.
+int own_rank();
+int n_processes();
+
 /// What is also thrown by all other processes of the job. Whoever meets anything else has to end
 /// the job, as the others may wait for this process.
 class SharedFailure {
@@ -44,13 +48,16 @@ class Shared final : public Kind, public SharedFailure {
 };
 
 /// Collective. Runs work that does not communicate itself; if it throws in any process, all throw
-/// the error of the lowest of these, as Shared. Its message names the process if there are several.
+/// the error of the lowest of these, as Shared. Its message names the process unless all failed.
 void together(const std::function<void()>& work);
 
 /// Counts that overflow would be wrong without a word.
 /// \param limit  the largest number that can be counted
 /// \throws InvalidOption  a process has more; says what helps
 void require_countable(const char* what, std::uint64_t n, std::uint64_t limit);
+
+/// Collective. The same for work of the first process alone.
+void on_first(const std::function<void()>& work);
 
 /// Collective. Runs a program and gives its exit code, or that of `describe` for what it throws. An
 /// error that all processes know is described by the first alone; any other ends the job at once.
@@ -65,6 +72,7 @@ double sum_of_all(double value);
 std::int64_t sum_of_all(std::int64_t value);
 /// Each entry by itself; equally many in all processes.
 std::vector<double> sum_of_all(std::vector<double> values);
+std::vector<std::int64_t> sum_of_all(std::vector<std::int64_t> values);
 double largest_of_all(double value);
 
 }  // namespace carat

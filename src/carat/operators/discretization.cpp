@@ -21,15 +21,14 @@ void require_gradient(const Discretization& d, Eigen::Index n_values) {
                         std::to_string(expected));
 }
 
-/// Sums measure * axes * g of every part into rows chosen by `visit(part, add)`, then divides.
+/// Sums measure * axes * g and the measure of every part into rows chosen by `visit(part, add)`.
 template <class Visit>
-Points average_parts(const Discretization& d, const Vector& vectors, Index n_rows,
+VectorSums sum_parts(const Discretization& d, const Vector& vectors, Index n_rows,
                      const Visit& visit) {
   require_gradient(d, vectors.size());
   if (d.frames.parts.empty() && d.n_samples() > 0)
     throw InvalidOption("the frames were not computed; ask for DiscretizationParts::Frames");
-  Points sum = Points::Zero(n_rows, 3);
-  Vector measure = Vector::Zero(n_rows);
+  VectorSums sum = VectorSums::Zero(n_rows, 4);
   Vector sharpened;
   if (d.is_one_form()) sharpened = d.one_forms.sharp * vectors;
   for (std::size_t k = 0; k < d.frames.parts.size(); ++k) {
@@ -39,12 +38,10 @@ Points average_parts(const Discretization& d, const Vector& vectors, Index n_row
                         : d.frames.axes.empty() ? Vec3(vectors.segment<3>(first))
                                                 : d.frames.axes[k] * vectors.segment<2>(first);
     visit(part, [&](Index row) {
-      sum.row(row) += part.measure * vector.transpose();
-      measure[row] += part.measure;
+      sum.row(row).head<3>() += part.measure * vector.transpose();
+      sum(row, 3) += part.measure;
     });
   }
-  for (Index row = 0; row < n_rows; ++row)
-    if (measure[row] > 0) sum.row(row) /= measure[row];
   return sum;
 }
 
@@ -113,9 +110,29 @@ std::vector<bool> Discretization::normalise_samples(Vector& vectors) const {
   return vanished;
 }
 
+Points means_of_sums(const VectorSums& sums) {
+  Points means = sums.leftCols<3>();
+  for (Index row = 0; row < means.rows(); ++row)
+    if (sums(row, 3) > 0) means.row(row) /= sums(row, 3);
+  return means;
+}
+
+Points directions_of_sums(const VectorSums& sums) {
+  Points field = means_of_sums(sums);
+  for (Index row = 0; row < field.rows(); ++row) {
+    const double largest = field.row(row).lpNorm<Eigen::Infinity>();
+    if (largest > 0) field.row(row) = (field.row(row) / largest).eval().normalized();
+  }
+  return field;
+}
+
+VectorSums Discretization::element_sums(const Vector& vectors, Index n_elements) const {
+  return sum_parts(*this, vectors, n_elements,
+                   [](const GradientFrames::Part& part, auto&& add) { add(part.element); });
+}
+
 Points Discretization::element_vectors(const Vector& vectors, Index n_elements) const {
-  return average_parts(*this, vectors, n_elements,
-                       [](const GradientFrames::Part& part, auto&& add) { add(part.element); });
+  return means_of_sums(element_sums(vectors, n_elements));
 }
 
 std::string Discretization::lacks_element_directions() const {
@@ -137,12 +154,12 @@ Vector Discretization::element_directions(const Vector& vectors) const {
     n_elements = std::max(n_elements, part.element + 1);
   // Scaled first: the squares of small values would vanish in the means' lengths.
   const double scale = vectors.size() > 0 ? vectors.lpNorm<Eigen::Infinity>() : 0.0;
-  Points field = element_vectors(scale > 0 ? Vector(vectors / scale) : vectors, n_elements);
-  for (Index f = 0; f < n_elements; ++f) {
-    const double largest = field.row(f).lpNorm<Eigen::Infinity>();
-    if (largest > 0) field.row(f) = (field.row(f) / largest).eval().normalized();
-  }
-  Vector result = Vector::Zero(vectors.size());
+  return directions_of_field(
+      directions_of_sums(element_sums(scale > 0 ? Vector(vectors / scale) : vectors, n_elements)));
+}
+
+Vector Discretization::directions_of_field(const Points& field) const {
+  Vector result = Vector::Zero(first_row(n_samples()));
   const Index length = gradient_dimension - jump_components;
   for (std::size_t k = 0; k < frames.parts.size(); ++k) {
     const GradientFrames::Part& part = frames.parts[k];
@@ -169,12 +186,15 @@ Vector Discretization::element_directions(const Vector& vectors) const {
   return result;
 }
 
+VectorSums Discretization::vertex_sums(const Vector& vectors) const {
+  return sum_parts(*this, vectors, n_vertices(), [](const GradientFrames::Part& part, auto&& add) {
+    for (const Index v : part.vertices)
+      if (v >= 0) add(v);
+  });
+}
+
 Points Discretization::vertex_vectors(const Vector& vectors) const {
-  return average_parts(*this, vectors, n_vertices(),
-                       [](const GradientFrames::Part& part, auto&& add) {
-                         for (const Index v : part.vertices)
-                           if (v >= 0) add(v);
-                       });
+  return means_of_sums(vertex_sums(vectors));
 }
 
 }  // namespace carat

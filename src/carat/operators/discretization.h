@@ -120,6 +120,9 @@ struct OneForms {
   SparseMatrix flat;           ///< (rows, 3 * samples): the differences of a vector  [length]
 };
 
+/// Integrals of vectors over elements or about vertices: x, y, z, and the measure.
+using VectorSums = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+
 /// The discrete operators of one mesh and method: an immutable value.
 ///
 /// Integrated (weak) quantities: stiffness S is symmetric positive semidefinite,
@@ -185,6 +188,8 @@ struct Discretization {
   /// \throws InvalidOption  samples span several elements, and their jumps are not in the gradient
   ///                        (diamond) or have no frame (volumes): lacks_element_directions()
   Vector element_directions(const Vector& vectors) const;
+  /// The same from the field itself. \param field  one unit vector or zero an element
+  Vector directions_of_field(const Points& field) const;
   /// \return empty, or why element_directions() cannot be had
   std::string lacks_element_directions() const;
   /// Integrated row sums of the mass.
@@ -197,7 +202,15 @@ struct Discretization {
   Points element_vectors(const Vector& vectors, Index n_elements) const;
   /// The same for vertices: mean over the parts that touch the vertex.
   Points vertex_vectors(const Vector& vectors) const;
+  /// What these means are quotients of, which adds up over the parts of a mesh.
+  VectorSums element_sums(const Vector& vectors, Index n_elements) const;
+  VectorSums vertex_sums(const Vector& vectors) const;
 };
+
+/// The means of element_sums() and vertex_sums(); zero where nothing has been added.
+Points means_of_sums(const VectorSums& sums);
+/// Their directions: unit vectors, zero where the mean is.
+Points directions_of_sums(const VectorSums& sums);
 
 /// The two phases of a discretization. The constructor of an implementation runs the symbolic one:
 /// sparsity from connectivity alone; reassemble() runs the numeric one and can be repeated with
