@@ -37,9 +37,9 @@ void run(Session& session, const Options& options) {
   for (const Index v : curvature.undefined_vertices)
     defined[v] = std::numeric_limits<double>::quiet_NaN();
   session.report()["signed"] = options.with_sign;
-  session.report()["mean_curvature"] = extremes(defined);
+  session.report()["mean_curvature"] = to_json(extremes(defined));
   session.say(std::string("mean curvature") +
-              (options.with_sign ? " (signed): " : " (unsigned): ") + describe_extremes(defined));
+              (options.with_sign ? " (signed): " : " (unsigned): ") + in_words(extremes(defined)));
   data.fields.vertex = {scalar_field("mean_curvature", curvature.values)};
   data.fields.face.clear();
   write_output(session, options.output, "Mean curvature", std::move(data));

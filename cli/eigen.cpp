@@ -1,111 +1,51 @@
 // carat eigen: eigenvalues and modes of the Laplacian.
 
+#include "cli/eigen.h"
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <utility>
 
-#include "carat/apps/eigenmodes.h"
 #include "carat/base/error.h"
 #include "carat/mesh/statistics.h"
 #include "carat/operators/registry.h"
 #include "cli/command.h"
 #include "cli/files.h"
 #include "cli/mesh_kinds.h"
-#include "cli/operator_options.h"
 
 namespace carat::cli {
 namespace {
 
-struct Options {
-  std::string input, output, solver = "auto";
-  Index count = 10;
-  bool dirichlet = false;
-  OperatorOptions discretization;
-};
-
 /// Vertices where the modes vanish.
 template <class Mesh>
-std::vector<Index> dirichlet_vertices(const Mesh& mesh, bool dirichlet) {
+std::vector<Index> dirichlet_vertices(const Mesh& mesh, const EigenArguments& options) {
   std::vector<Index> vertices;
-  if (!dirichlet) return vertices;
+  if (!options.dirichlet) return vertices;
   const std::vector<bool> on_boundary = boundary_vertices(mesh);
   for (Index v = 0; v < mesh.n_vertices(); ++v)
     if (on_boundary[static_cast<std::size_t>(v)]) vertices.push_back(v);
-  if (vertices.empty())
-    throw InvalidOption("--dirichlet: the mesh is closed, it has no boundary; leave it out");
+  check_boundary(options, !vertices.empty());
   return vertices;
 }
 
-void report_pairs(Session& session, const EigenPairs& pairs) {
-  Json& report = session.report();
-  report["eigenvalues"] = Json::array();
-  report["residuals"] = Json::array();
-  session.say("mode        lambda          residual");
-  for (Index k = 0; k < pairs.values.size(); ++k) {
-    report["eigenvalues"].push_back(pairs.values[k]);
-    report["residuals"].push_back(pairs.residuals[k]);
-    char line[64];
-    std::snprintf(line, sizeof line, "%-11d %-15.10g %.1e", k + 1, pairs.values[k],
-                  pairs.residuals[k]);
-    session.say(line);
-  }
-  report["zero_modes"] = pairs.zero_modes;
+Json to_json(const EigenPairs& pairs) {
   const FactorInfo& factor = pairs.factor;
-  report["solver"] = {{"kind", eigen_method_name(pairs.method)},
-                      {"method", factor.method},
-                      {"reason", pairs.reason},
-                      {"ordering", factor.ordering},
-                      {"factor_nnz", factor.nonzeros},
-                      {"factor_seconds", factor.analyse_seconds + factor.factor_seconds},
-                      {"iterations", pairs.iterations},
-                      {"solves", pairs.solves},
-                      {"bytes", pairs.bytes}};
-  session.say("solver: " + factor.method +
-              (pairs.iterations > 0 ? ", " + count(pairs.iterations, "iteration") : "") +
-              (pairs.solves > 0 ? ", " + count(pairs.solves, "solve") + ", " +
-                                      text(1e-6 * static_cast<double>(pairs.bytes)) + " MB"
-                                : "") +
-              (pairs.reason.empty() ? "" : " (" + pairs.reason + ")"));
+  return {{"kind", eigen_method_name(pairs.method)},
+          {"method", factor.method},
+          {"reason", pairs.reason},
+          {"ordering", factor.ordering},
+          {"factor_nnz", factor.nonzeros},
+          {"factor_seconds", factor.analyse_seconds + factor.factor_seconds},
+          {"iterations", pairs.iterations},
+          {"solves", pairs.solves},
+          {"bytes", pairs.bytes}};
 }
 
 template <class Data>
-void write_modes(Session& session, const Options& options, const EigenPairs& pairs, Data& data) {
-  if (options.output.empty()) return;
-  data.fields.vertex.clear();
-  element_fields(data).clear();
-  for (Index k = 0; k < pairs.values.size(); ++k)
-    data.fields.vertex.push_back(
-        scalar_field("mode_" + std::to_string(k + 1), pairs.vectors.col(k)));
-  write_output(session, options.output, "Eigenmodes", std::move(data));
-}
-
-template <class Data>
-EigenPairs pairs_by_engine(Session& session, const Options& options, const Data& data,
-                           const std::vector<Index>& fixed) {
-  if (options.solver != "auto")
-    throw InvalidOption("--solver " + options.solver +
-                        " is of the embedded engine; choose SLEPc's by its options, e.g. "
-                        "-st_pc_type");
-  const EngineProblem problem =
-      engine_problem(session, data.mesh, options.discretization, DiscretizationParts::Matrices);
-  return session.phase("solve",
-                       [&] { return session.engine()->eigenmodes(problem, options.count, fixed); });
-}
-
-template <class Data>
-void find_modes(Session& session, const Options& options, Data& data) {
+void find_modes(Session& session, const EigenArguments& options, Data& data) {
   check_output_kind(options.output, words(data.mesh));
-  const std::vector<Index> fixed = dirichlet_vertices(data.mesh, options.dirichlet);
-  if (session.engine() != nullptr) {
-    const EigenPairs pairs = pairs_by_engine(session, options, data, fixed);
-    report_pairs(session, pairs);
-    session.report()["solver"] = {{"kind", "slepc"},
-                                  {"method", pairs.factor.method},
-                                  {"processes", session.engine()->n_processes()},
-                                  {"iterations", pairs.iterations}};
-    write_modes(session, options, pairs, data);
-    return;
-  }
+  const std::vector<Index> fixed = dirichlet_vertices(data.mesh, options);
   const Discretization discretization =
       discretize(session, data.mesh, options.discretization, DiscretizationParts::Matrices);
   EigenOptions solver{.method = eigen_method(options.solver),
@@ -120,20 +60,25 @@ void find_modes(Session& session, const Options& options, Data& data) {
     return eigenmodes(discretization, options.count, fixed, solver);
   });
   session.moved("solve", pairs.traffic);
-  session.report()["options"]["count"] = options.count;
-  session.report()["options"]["dirichlet"] = options.dirichlet;
-  report_pairs(session, pairs);
-  write_modes(session, options, pairs, data);
+  report_pairs(session, options, pairs, to_json(pairs));
+  if (options.output.empty()) return;
+  data.fields.vertex = mode_fields(pairs.vectors);
+  element_fields(data).clear();
+  write_output(session, options.output, "Eigenmodes", std::move(data));
 }
 
-void run(Session& session, const Options& options) {
+void run(Session& session, const EigenArguments& options) {
+  if (session.engine() != nullptr) {
+    session.engine()->eigen(session, options);
+    return;
+  }
   check_output(options.output, Content::MeshFields);
   MeshData data = read_input(session, options.input);
   std::visit([&](auto& held) { find_modes(session, options, held); }, data);
 }
 
 std::function<void(Session&)> declare(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<EigenArguments>();
   app.add_option("MESH", options->input, "The mesh")->required();
   app.add_option("-k,--count", options->count, "How many, from the lowest")->capture_default_str();
   app.add_flag("--dirichlet", options->dirichlet,
@@ -154,6 +99,44 @@ std::function<void(Session&)> declare(CLI::App& app) {
 }
 
 }  // namespace
+
+void check_boundary(const EigenArguments& arguments, bool has_boundary) {
+  if (arguments.dirichlet && !has_boundary)
+    throw InvalidOption("--dirichlet: the mesh is closed, it has no boundary; leave it out");
+}
+
+void report_pairs(Session& session, const EigenArguments& arguments, const EigenPairs& pairs,
+                  Json solver) {
+  Json& report = session.report();
+  report["options"]["count"] = arguments.count;
+  report["options"]["dirichlet"] = arguments.dirichlet;
+  report["eigenvalues"] = Json::array();
+  report["residuals"] = Json::array();
+  session.say("mode        lambda          residual");
+  for (Index k = 0; k < pairs.values.size(); ++k) {
+    report["eigenvalues"].push_back(pairs.values[k]);
+    report["residuals"].push_back(pairs.residuals[k]);
+    char line[64];
+    std::snprintf(line, sizeof line, "%-11d %-15.10g %.1e", k + 1, pairs.values[k],
+                  pairs.residuals[k]);
+    session.say(line);
+  }
+  report["zero_modes"] = pairs.zero_modes;
+  report["solver"] = std::move(solver);
+  session.say("solver: " + pairs.factor.method +
+              (pairs.iterations > 0 ? ", " + count(pairs.iterations, "iteration") : "") +
+              (pairs.solves > 0 ? ", " + count(pairs.solves, "solve") + ", " +
+                                      text(1e-6 * static_cast<double>(pairs.bytes)) + " MB"
+                                : "") +
+              (pairs.reason.empty() ? "" : " (" + pairs.reason + ")"));
+}
+
+std::vector<Field> mode_fields(const Matrix& vectors) {
+  std::vector<Field> fields;
+  for (Index k = 0; k < vectors.cols(); ++k)
+    fields.push_back(scalar_field("mode_" + std::to_string(k + 1), vectors.col(k)));
+  return fields;
+}
 
 const Command eigen_command = {
     "eigen",

@@ -1,14 +1,9 @@
 #pragma once
-// What solves a command's problem over several processes: the program carat-petsc has such an
-// engine, carat solves by itself and starts carat-petsc where it is asked for.
+// What runs commands over several processes: the program carat-petsc has such an engine, carat does
+// everything by itself and starts carat-petsc where an engine is asked for.
 
 #include <string>
-#include <variant>
 #include <vector>
-
-#include "carat/apps/eigenmodes.h"
-#include "carat/apps/heat_geodesics.h"
-#include "carat/apps/poisson.h"
 
 namespace CLI {
 class App;
@@ -16,32 +11,31 @@ class App;
 
 namespace carat::cli {
 
-/// The operator on a mesh. K is given as the text of an expression, which other processes can read.
-struct EngineProblem {
-  std::variant<const PolygonMesh*, const PolyhedralMesh*> mesh;
-  std::string operator_name;
-  DiscretizationOptions options;
-  std::string coefficient;
-};
+class Session;
+struct EigenArguments;
+struct GeodesicsArguments;
+struct OperatorsArguments;
+struct PoissonArguments;
 
-/// Data and solutions are those of the whole mesh.
+/// Runs in every process of the job with the same arguments, each on its part of the mesh.
 class Engine {
  public:
   virtual ~Engine() = default;
-  virtual PoissonSolution poisson(const EngineProblem& problem,
-                                  const BoundaryConditions& conditions, const Vector& f) = 0;
-  virtual GeodesicDistance geodesics(const EngineProblem& problem, double t_coef,
-                                     const std::vector<GeodesicSource>& sources,
-                                     double& time_step) = 0;
-  virtual EigenPairs eigenmodes(const EngineProblem& problem, Index count,
-                                const std::vector<Index>& fixed) = 0;
-  virtual int n_processes() const = 0;
+  virtual void poisson(Session& session, const PoissonArguments& arguments) const = 0;
+  virtual void geodesics(Session& session, const GeodesicsArguments& arguments) const = 0;
+  virtual void eigen(Session& session, const EigenArguments& arguments) const = 0;
+  virtual void operators(Session& session, const OperatorsArguments& arguments) const = 0;
 };
 
 /// Declares --engine.
 void declare_engine_option(CLI::App& app);
 
-/// Runs the program. \param engine  null: where --engine asks for one, another program is started
-int run_program(std::vector<std::string> arguments, Engine* engine);
+/// Whether --engine petsc is among the arguments.
+bool asks_for_petsc(const std::vector<std::string>& arguments);
+
+/// Runs the program.
+/// \param engine  null: where --engine asks for one, another program is started. Else exceptions of
+///                its commands are the caller's, who knows which other processes they concern.
+int run_program(std::vector<std::string> arguments, const Engine* engine);
 
 }  // namespace carat::cli

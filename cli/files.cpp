@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <utility>
 
 #include "carat/base/error.h"
 #include "carat/report/html_view.h"
@@ -49,17 +48,6 @@ std::string writable_extensions(Content content) {
   return extensions([&](const FileFormat& format) {
     return writes(format) && (content == Content::Mesh || format.fields);
   });
-}
-
-/// Positions of the least and the largest finite value, -1 without one.
-std::pair<Index, Index> extreme_rows(const Vector& values) {
-  Index least = -1, largest = -1;
-  for (Index v = 0; v < values.size(); ++v) {
-    if (!std::isfinite(values[v])) continue;
-    if (least < 0 || values[v] < values[least]) least = v;
-    if (largest < 0 || values[v] > values[largest]) largest = v;
-  }
-  return {least, largest};
 }
 
 /// 0 where it is a folder.
@@ -167,20 +155,34 @@ Field vector_field(const std::string& name, const Points& vectors) {
   return {name, 3, {vectors.data(), vectors.data() + vectors.size()}};
 }
 
-Json extremes(const Vector& values) {
-  const auto [least, largest] = extreme_rows(values);
-  if (least < 0) return {{"min", nullptr}, {"max", nullptr}};
-  return {{"min", values[least]},
-          {"min_vertex", least},
-          {"max", values[largest]},
-          {"max_vertex", largest}};
+Extremes extremes(const Vector& values) {
+  Extremes found;
+  for (Index v = 0; v < values.size(); ++v) {
+    if (!std::isfinite(values[v])) continue;
+    if (found.least_vertex < 0 || values[v] < found.least) {
+      found.least = values[v];
+      found.least_vertex = v;
+    }
+    if (found.largest_vertex < 0 || values[v] > found.largest) {
+      found.largest = values[v];
+      found.largest_vertex = v;
+    }
+  }
+  return found;
 }
 
-std::string describe_extremes(const Vector& values) {
-  const auto [least, largest] = extreme_rows(values);
-  if (least < 0) return "nowhere defined";
-  return text(values[least]) + " (vertex " + std::to_string(least) + ") to " +
-         text(values[largest]) + " (vertex " + std::to_string(largest) + ")";
+Json to_json(const Extremes& extremes) {
+  if (extremes.least_vertex < 0) return {{"min", nullptr}, {"max", nullptr}};
+  return {{"min", extremes.least},
+          {"min_vertex", extremes.least_vertex},
+          {"max", extremes.largest},
+          {"max_vertex", extremes.largest_vertex}};
+}
+
+std::string in_words(const Extremes& extremes) {
+  if (extremes.least_vertex < 0) return "nowhere defined";
+  return text(extremes.least) + " (vertex " + std::to_string(extremes.least_vertex) + ") to " +
+         text(extremes.largest) + " (vertex " + std::to_string(extremes.largest_vertex) + ")";
 }
 
 }  // namespace carat::cli

@@ -52,9 +52,15 @@ Field scalar_field(const std::string& name, const Vector& values);
 /// One vector a row as a field.
 Field vector_field(const std::string& name, const Points& vectors);
 
-/// The extremes of the finite values and where they are, as an object for JSON.
-Json extremes(const Vector& values);
-/// The same as words, e.g. "0 to 3.1 (largest at vertex 17)".
-std::string describe_extremes(const Vector& values);
+/// The extremes of finite values and the lowest vertices where they are; -1: there are none.
+struct Extremes {
+  double least = 0, largest = 0;
+  std::int64_t least_vertex = -1, largest_vertex = -1;
+};
+Extremes extremes(const Vector& values);
+/// As an object for JSON.
+Json to_json(const Extremes& extremes);
+/// As words, e.g. "0 (vertex 3) to 3.1 (vertex 17)".
+std::string in_words(const Extremes& extremes);
 
 }  // namespace carat::cli

@@ -1,154 +1,39 @@
 // carat geodesics: distance along a surface or through a volume.
 
+#include "cli/geodesics.h"
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
-#include "carat/apps/heat_geodesics.h"
 #include "carat/base/error.h"
 #include "carat/io/npy.h"
 #include "cli/command.h"
-#include "cli/files.h"
-#include "cli/operator_options.h"
+#include "cli/mesh_kinds.h"
 #include "cli/source_file.h"
 
 namespace carat::cli {
 namespace {
 
-using SourceSets = std::vector<std::vector<GeodesicSource>>;
-
 /// More distances than this, one field each, are better kept in a matrix.
 constexpr std::size_t kMostFields = 64;
 
-struct Options {
-  std::string input, output, sources_file;
-  std::vector<Index> sources;
-  bool each = false;
-  double t_coef = 1;
-  std::string edge_length = "max", directions = "samples", solver = "auto";
-  OperatorOptions discretization;
-};
-
-bool is_matrix(const std::string& path) {
-  return std::filesystem::path(path).extension() == ".npy";
-}
-
-/// What can be refused before the mesh is read.
-void check(const Options& options) {
-  if (options.sources.empty() && options.sources_file.empty())
-    throw InvalidOption("--source is required, or --sources-file with vertices to measure from");
-  if (!is_matrix(options.output)) {
-    check_output(options.output, Content::MeshFields);
-    return;
-  }
-  if (!options.each)
-    throw InvalidOption(options.output +
-                        ": a matrix of distances has one row a source; add --each, or name a mesh "
-                        "file for the one distance from all sources");
-  check_output_folder(options.output);
-}
-
-/// The vertices given one by one, and those of the file; with --each all by themselves.
-SourceSets source_sets(const Options& options, Index n_vertices) {
-  SourceSets sets;
-  for (const Index v : options.sources) {
-    if (v < 0 || v >= n_vertices)
-      throw InvalidOption("--source " + std::to_string(v) +
-                              ": this vertex does not exist; the mesh has vertices 0 to " +
-                              std::to_string(n_vertices - 1),
-                          {v});
-    sets.push_back({{v}});
-  }
-  if (!options.sources_file.empty())
-    for (auto& set : read_source_sets(options.sources_file, n_vertices))
-      sets.push_back(std::move(set));
-  if (options.each) {
-    if (!is_matrix(options.output) && !options.output.empty() && sets.size() > kMostFields)
-      throw InvalidOption(options.output + ": " + std::to_string(sets.size()) +
-                          " distances are too many for fields of a mesh, at most " +
-                          std::to_string(kMostFields) + "; name a matrix file, .npy");
-    return sets;
-  }
-  std::vector<GeodesicSource> all;
-  for (const auto& set : sets) all.insert(all.end(), set.begin(), set.end());
-  return {std::move(all)};
-}
-
-/// Unit vectors along which the distance grows, one an element; zero where it is infinite or flat.
-Field direction_field(const Discretization& discretization, Vector distance, Index n_elements) {
-  for (double& value : distance)
-    if (!std::isfinite(value)) value = 0;
-  Points directions =
-      discretization.element_vectors(discretization.gradient * distance, n_elements);
-  directions.rowwise().normalize();
-  return vector_field("direction", directions);
-}
-
-void report_distance(Session& session, const GeodesicDistance& distance) {
-  Diagnostics diagnostics;
-  diagnostics.add("unreachable_vertices",
-                  "vertices that no source reaches: their distance is infinite",
-                  distance.unreachable_vertices);
-  session.add_diagnostics(diagnostics);
-  session.report()["unresolved_samples"] = distance.unresolved_samples;
-  session.report()["distance"] = extremes(distance.values);
-  if (distance.unresolved_samples > 0)
-    session.say("! " + std::to_string(distance.unresolved_samples) +
-                " gradient samples that the heat does not reach in double precision: distances "
-                "are too small behind them; a larger --t-coef helps");
-  session.say("distance: " + describe_extremes(distance.values));
-}
-
-/// What many distances have in common.
-struct Summary {
-  Index sets = 0, incomplete_sets = 0;  // sets that do not reach all vertices
-  std::int64_t unresolved_samples = 0;
-  double largest = 0;
-  Index largest_set = 0;
-
-  void add(const GeodesicDistance& distance) {
-    if (!distance.unreachable_vertices.empty()) ++incomplete_sets;
-    unresolved_samples += distance.unresolved_samples;
-    for (const double value : distance.values)
-      if (std::isfinite(value) && value > largest) {
-        largest = value;
-        largest_set = sets;
-      }
-    ++sets;
-  }
-};
-
-void report_each(Session& session, const Summary& summary, double seconds) {
-  Json& report = session.report();
-  report["source_sets"] = summary.sets;
-  report["seconds_per_source_set"] = seconds / std::max(1, summary.sets);
-  report["unresolved_samples"] = summary.unresolved_samples;
-  report["incomplete_source_sets"] = summary.incomplete_sets;
-  report["largest_distance"] = {{"value", summary.largest}, {"source_set", summary.largest_set}};
-  if (summary.unresolved_samples > 0)
-    session.say("! " + std::to_string(summary.unresolved_samples) +
-                " gradient samples that the heat does not reach in double precision: distances "
-                "are too small behind them; a larger --t-coef helps");
-  if (summary.incomplete_sets > 0)
-    session.say("! " + count(summary.incomplete_sets, "source") +
-                " that do not reach all vertices: these have infinite distances");
-  session.say(count(summary.sets, "source") + ", " + text(seconds / std::max(1, summary.sets)) +
-              " s each; largest distance " + text(summary.largest) + " (source " +
-              std::to_string(summary.largest_set) + ")");
-}
-
 /// Distances from every source by itself, into the rows of a matrix or fields of the mesh.
 template <class Data>
-void measure_each(Session& session, const Options& options, Data& data,
+void measure_each(Session& session, const GeodesicsArguments& options, Data& data,
                   const HeatGeodesics& geodesics, const SourceSets& sets) {
-  Summary summary;
+  DistanceSummary summary;
   const auto start = std::chrono::steady_clock::now();
   const auto for_each = [&](const auto& use) {
     session.phase("solve", [&](ProgressLine& line) {
       geodesics.distances(sets, [&](Index set, GeodesicDistance&& distance) {
-        summary.add(distance);
+        double largest = 0;
+        for (const double value : distance.values)
+          if (std::isfinite(value)) largest = std::max(largest, value);
+        summary.add(distance.unreachable_vertices.empty(), distance.unresolved_samples, largest);
         session.moved("solve", distance.traffic);
         use(set, std::move(distance.values));
         line.show("solve " + std::to_string(set + 1) + " of " + std::to_string(sets.size()));
@@ -159,14 +44,10 @@ void measure_each(Session& session, const Options& options, Data& data,
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   };
   const Index rows = static_cast<Index>(sets.size()), columns = data.mesh.n_vertices();
-  if (is_matrix(options.output)) {
+  if (options.writes_matrix()) {
     write_npy(options.output, rows, columns,
               [&](const PutRow& put) { for_each([&](Index, Vector&& values) { put(values); }); });
-    session.report()["output"] = options.output;
-    session.report()["matrix"] = {{"shape", {rows, columns}},
-                                  {"bytes", std::filesystem::file_size(options.output)}};
-    session.say("written: " + options.output + ", " + std::to_string(rows) + " x " +
-                std::to_string(columns));
+    report_matrix(session, options.output, rows, columns);
     return;
   }
   data.fields.vertex.clear();
@@ -178,74 +59,32 @@ void measure_each(Session& session, const Options& options, Data& data,
   write_output(session, options.output, "Geodesic distances", std::move(data));
 }
 
-/// Over several processes: writes the distance, not its direction.
 template <class Data>
-void measure_by_engine(Session& session, const Options& options, const SourceSets& sets,
-                       Data& data) {
-  if (options.solver != "auto" || options.each || options.edge_length != "max" ||
-      options.directions != "samples")
-    throw InvalidOption(
-        "--solver, --each, --edge-length and --directions are of the embedded engine; leave them "
-        "out");
-  const EngineProblem problem =
-      engine_problem(session, data.mesh, options.discretization, DiscretizationParts::Gradient);
-  double time_step = 0;
-  const GeodesicDistance distance = session.phase("solve", [&] {
-    return session.engine()->geodesics(problem, options.t_coef, sets.front(), time_step);
-  });
-  session.report()["options"]["t_coef"] = options.t_coef;
-  session.report()["time_step"] = time_step;
-  report_distance(session, distance);
-  data.fields.vertex = {scalar_field("distance", distance.values)};
-  element_fields(data).clear();
-  write_output(session, options.output, "Geodesic distance", std::move(data));
-}
-
-template <class Data>
-void measure(Session& session, const Options& options, Data& data) {
-  if (!is_matrix(options.output)) check_output_kind(options.output, words(data.mesh));
+void measure(Session& session, const GeodesicsArguments& options, Data& data) {
+  if (!options.writes_matrix()) check_output_kind(options.output, words(data.mesh));
   const SourceSets sets = source_sets(options, data.mesh.n_vertices());
-  if (session.engine() != nullptr) {
-    measure_by_engine(session, options, sets, data);
-    return;
-  }
-  const bool has_directions = !options.output.empty() && !options.each;
-  const bool of_elements = options.directions == "elements";
-  Discretization discretization = discretize(
-      session, data.mesh, options.discretization,
-      has_directions || of_elements ? DiscretizationParts::Frames : DiscretizationParts::Gradient);
-  const TimeStepLength length =
-      options.edge_length == "mean" ? TimeStepLength::MeanEdge : TimeStepLength::MaxEdge;
-  const HeatDirections directions =
-      of_elements ? HeatDirections::Elements : HeatDirections::Samples;
-  const SolverOptions solver{.kind = solver_kind(options.solver),
-                             .right_hand_sides = static_cast<Index>(sets.size()),
-                             .threads = session.threads()};
-  const HeatGeodesics geodesics = session.phase("factor", [&] {
-    return HeatGeodesics(data.mesh, std::move(discretization),
-                         {options.t_coef, length, directions, solver});
-  });
+  Discretization discretization =
+      discretize(session, data.mesh, options.discretization, options.parts());
+  HeatGeodesicsOptions heat = options.heat();
+  heat.solver = {.kind = solver_kind(options.solver),
+                 .right_hand_sides = static_cast<Index>(sets.size()),
+                 .threads = session.threads()};
+  const HeatGeodesics geodesics = session.phase(
+      "factor", [&] { return HeatGeodesics(data.mesh, std::move(discretization), heat); });
 
   // Of the heat also the matrix.
   session.moved("factor", setup_bytes(geodesics.poisson_info()) +
                               setup_bytes(geodesics.heat_info()) +
                               static_cast<double>(geodesics.heat_info().operator_bytes));
-  Json& report = session.report();
-  if (!options.sources.empty()) report["options"]["sources"] = options.sources;
-  if (!options.sources_file.empty()) report["options"]["sources_file"] = options.sources_file;
-  report["options"]["each"] = options.each;
-  report["options"]["t_coef"] = options.t_coef;
-  report["options"]["edge_length"] = options.edge_length;
-  report["options"]["directions"] = options.directions;
-  report["time_step"] = geodesics.time_step();
+  report_options(session, options, geodesics.time_step());
   const SolverInfo& poisson = geodesics.poisson_info();
-  report["solver"] = {{"kind", solver_kind_name(poisson.kind)},
-                      {"method", poisson.method},
-                      {"reason", poisson.reason},
-                      {"ordering", poisson.ordering},
-                      {"factor_nnz", poisson.nonzeros},
-                      {"heat_method", geodesics.heat_info().method},
-                      {"heat_reason", geodesics.heat_info().reason}};
+  session.report()["solver"] = {{"kind", solver_kind_name(poisson.kind)},
+                                {"method", poisson.method},
+                                {"reason", poisson.reason},
+                                {"ordering", poisson.ordering},
+                                {"factor_nnz", poisson.nonzeros},
+                                {"heat_method", geodesics.heat_info().method},
+                                {"heat_reason", geodesics.heat_info().reason}};
   session.say("solver: heat " + geodesics.heat_info().method + ", distance " + poisson.method +
               (poisson.reason.empty() ? "" : " (" + poisson.reason + ")"));
   if (options.each) {
@@ -255,22 +94,32 @@ void measure(Session& session, const Options& options, Data& data) {
   const GeodesicDistance distance =
       session.phase("solve", [&] { return geodesics.distance(sets.front()); });
   session.moved("solve", distance.traffic);
-  report_distance(session, distance);
+  report_distance(session, distance.unreachable_vertices, distance.unresolved_samples,
+                  extremes(distance.values));
   if (options.output.empty()) return;
   data.fields.vertex = {scalar_field("distance", distance.values)};
-  element_fields(data) = {
-      direction_field(geodesics.discretization(), distance.values, n_elements(data.mesh))};
+  const Discretization& d = geodesics.discretization();
+  element_fields(data) = {direction_field(
+      d.element_vectors(d.gradient * finite(distance.values), n_elements(data.mesh)))};
   write_output(session, options.output, "Geodesic distance", std::move(data));
 }
 
-void run(Session& session, const Options& options) {
-  check(options);
+void run(Session& session, const GeodesicsArguments& options) {
+  if (session.engine() != nullptr) {
+    session.engine()->geodesics(session, options);
+    return;
+  }
+  check_sources(options);
+  if (options.writes_matrix())
+    check_output_folder(options.output);
+  else
+    check_output(options.output, Content::MeshFields);
   MeshData data = read_input(session, options.input);
   std::visit([&](auto& held) { measure(session, options, held); }, data);
 }
 
 std::function<void(Session&)> declare(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<GeodesicsArguments>();
   app.add_option("MESH", options->input, "The mesh")->required();
   app.add_option("--source", options->sources,
                  "Vertex to measure from, counted from 0; repeat it for\n"
@@ -311,6 +160,127 @@ std::function<void(Session&)> declare(CLI::App& app) {
 }
 
 }  // namespace
+
+bool GeodesicsArguments::writes_matrix() const {
+  return std::filesystem::path(output).extension() == ".npy";
+}
+
+HeatGeodesicsOptions GeodesicsArguments::heat() const {
+  return {t_coef, edge_length == "mean" ? TimeStepLength::MeanEdge : TimeStepLength::MaxEdge,
+          directions == "elements" ? HeatDirections::Elements : HeatDirections::Samples};
+}
+
+DiscretizationParts GeodesicsArguments::parts() const {
+  return writes_directions() || directions == "elements" ? DiscretizationParts::Frames
+                                                         : DiscretizationParts::Gradient;
+}
+
+void check_sources(const GeodesicsArguments& options) {
+  if (options.sources.empty() && options.sources_file.empty())
+    throw InvalidOption("--source is required, or --sources-file with vertices to measure from");
+  if (options.writes_matrix() && !options.each)
+    throw InvalidOption(options.output +
+                        ": a matrix of distances has one row a source; add --each, or name a mesh "
+                        "file for the one distance from all sources");
+}
+
+SourceSets source_sets(const GeodesicsArguments& options, Index n_vertices) {
+  SourceSets sets;
+  for (const Index v : options.sources) {
+    if (v < 0 || v >= n_vertices)
+      throw InvalidOption("--source " + std::to_string(v) +
+                              ": this vertex does not exist; the mesh has vertices 0 to " +
+                              std::to_string(n_vertices - 1),
+                          {v});
+    sets.push_back({{v}});
+  }
+  if (!options.sources_file.empty())
+    for (auto& set : read_source_sets(options.sources_file, n_vertices))
+      sets.push_back(std::move(set));
+  if (options.each) {
+    if (!options.writes_matrix() && !options.output.empty() && sets.size() > kMostFields)
+      throw InvalidOption(options.output + ": " + std::to_string(sets.size()) +
+                          " distances are too many for fields of a mesh, at most " +
+                          std::to_string(kMostFields) + "; name a matrix file, .npy");
+    return sets;
+  }
+  std::vector<GeodesicSource> all;
+  for (const auto& set : sets) all.insert(all.end(), set.begin(), set.end());
+  return {std::move(all)};
+}
+
+Vector finite(Vector distance) {
+  for (double& value : distance)
+    if (!std::isfinite(value)) value = 0;
+  return distance;
+}
+
+Field direction_field(Points means) {
+  means.rowwise().normalize();
+  return vector_field("direction", means);
+}
+
+void report_options(Session& session, const GeodesicsArguments& options, double time_step) {
+  Json& report = session.report();
+  if (!options.sources.empty()) report["options"]["sources"] = options.sources;
+  if (!options.sources_file.empty()) report["options"]["sources_file"] = options.sources_file;
+  report["options"]["each"] = options.each;
+  report["options"]["t_coef"] = options.t_coef;
+  report["options"]["edge_length"] = options.edge_length;
+  report["options"]["directions"] = options.directions;
+  report["time_step"] = time_step;
+}
+
+void report_distance(Session& session, const std::vector<Index>& unreachable, Index unresolved,
+                     const Extremes& distance) {
+  Diagnostics diagnostics;
+  diagnostics.add("unreachable_vertices",
+                  "vertices that no source reaches: their distance is infinite", unreachable);
+  session.add_diagnostics(diagnostics);
+  session.report()["unresolved_samples"] = unresolved;
+  session.report()["distance"] = to_json(distance);
+  if (unresolved > 0)
+    session.say("! " + std::to_string(unresolved) +
+                " gradient samples that the heat does not reach in double precision: distances "
+                "are too small behind them; a larger --t-coef helps");
+  session.say("distance: " + in_words(distance));
+}
+
+void DistanceSummary::add(bool complete, Index unresolved, double largest_distance) {
+  if (!complete) ++incomplete_sets;
+  unresolved_samples += unresolved;
+  if (largest_distance > largest) {
+    largest = largest_distance;
+    largest_set = sets;
+  }
+  ++sets;
+}
+
+void report_each(Session& session, const DistanceSummary& summary, double seconds) {
+  Json& report = session.report();
+  report["source_sets"] = summary.sets;
+  report["seconds_per_source_set"] = seconds / std::max(1, summary.sets);
+  report["unresolved_samples"] = summary.unresolved_samples;
+  report["incomplete_source_sets"] = summary.incomplete_sets;
+  report["largest_distance"] = {{"value", summary.largest}, {"source_set", summary.largest_set}};
+  if (summary.unresolved_samples > 0)
+    session.say("! " + std::to_string(summary.unresolved_samples) +
+                " gradient samples that the heat does not reach in double precision: distances "
+                "are too small behind them; a larger --t-coef helps");
+  if (summary.incomplete_sets > 0)
+    session.say("! " + count(summary.incomplete_sets, "source") +
+                " that do not reach all vertices: these have infinite distances");
+  session.say(count(summary.sets, "source") + ", " + text(seconds / std::max(1, summary.sets)) +
+              " s each; largest distance " + text(summary.largest) + " (source " +
+              std::to_string(summary.largest_set) + ")");
+}
+
+void report_matrix(Session& session, const std::string& path, Index rows, Index columns) {
+  session.report()["output"] = path;
+  session.report()["matrix"] = {{"shape", {rows, columns}},
+                                {"bytes", std::filesystem::file_size(path)}};
+  session.say("written: " + path + ", " + std::to_string(rows) + " x " + std::to_string(columns));
+}
 
 const Command geodesics_command = {
     "geodesics",

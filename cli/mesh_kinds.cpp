@@ -4,26 +4,18 @@
 
 namespace carat::cli {
 
-std::string describe_sizes(const PolygonMesh& mesh) {
-  return count(mesh.n_vertices(), "vertex") + ", " + count(mesh.n_edges(), "edge") + ", " +
-         count(mesh.n_faces(), "face");
+std::string describe_sizes(const MeshSizes& sizes) {
+  return count(sizes.vertices, "vertex") + ", " + count(sizes.edges, "edge") + ", " +
+         count(sizes.faces, "face") + (sizes.cells < 0 ? "" : ", " + count(sizes.cells, "cell"));
 }
 
-std::string describe_sizes(const PolyhedralMesh& mesh) {
-  return describe_sizes(mesh.face_mesh()) + ", " + count(mesh.n_cells(), "cell");
-}
-
-Json sizes_to_json(const PolygonMesh& mesh) {
-  return {{"vertices", mesh.n_vertices()},
-          {"edges", mesh.n_edges()},
-          {"faces", mesh.n_faces()},
-          {"corners", mesh.n_corners()}};
-}
-
-Json sizes_to_json(const PolyhedralMesh& mesh) {
-  Json sizes = sizes_to_json(mesh.face_mesh());
-  sizes["cells"] = mesh.n_cells();
-  return sizes;
+Json sizes_to_json(const MeshSizes& sizes) {
+  Json json = {{"vertices", sizes.vertices},
+               {"edges", sizes.edges},
+               {"faces", sizes.faces},
+               {"corners", sizes.corners}};
+  if (sizes.cells >= 0) json["cells"] = sizes.cells;
+  return json;
 }
 
 PolygonMesh underived(const PolygonMesh& mesh) { return PolygonMesh(mesh.points(), mesh.faces()); }

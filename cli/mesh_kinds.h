@@ -48,13 +48,24 @@ inline const std::vector<const VolumeOperator*>& operators_of(const PolyhedralMe
 inline std::span<const BoundaryPatch> patches(const SurfaceData&) { return {}; }
 inline std::span<const BoundaryPatch> patches(const VolumeData& data) { return data.patches; }
 
+/// How large a mesh is.
+struct MeshSizes {
+  std::int64_t vertices = 0, edges = 0, faces = 0, corners = 0, cells = -1;  ///< surfaces: no cells
+
+  MeshSizes() = default;
+  MeshSizes(const PolygonMesh& mesh)
+      : vertices(mesh.n_vertices()),
+        edges(mesh.n_edges()),
+        faces(mesh.n_faces()),
+        corners(mesh.n_corners()) {}
+  MeshSizes(const PolyhedralMesh& mesh) : MeshSizes(mesh.face_mesh()) { cells = mesh.n_cells(); }
+};
+
 /// "12 vertices, 30 edges, 20 faces", of volumes also the cells.
-std::string describe_sizes(const PolygonMesh& mesh);
-std::string describe_sizes(const PolyhedralMesh& mesh);
+std::string describe_sizes(const MeshSizes& sizes);
 
 /// The same as an object for JSON.
-Json sizes_to_json(const PolygonMesh& mesh);
-Json sizes_to_json(const PolyhedralMesh& mesh);
+Json sizes_to_json(const MeshSizes& sizes);
 
 /// A side of the boundary with its vertices and its centre.
 struct BoundarySide {

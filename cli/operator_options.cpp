@@ -131,7 +131,7 @@ std::string in_words(const OperatorChoice& choice) {
 
 /// The operator of that name on meshes of this kind.
 template <class Mesh>
-const OperatorEntry<Mesh>& choose_operator(const Mesh& mesh, const std::string& name) {
+const OperatorEntry<Mesh>& operator_named(const Mesh& mesh, const std::string& name) {
   const auto& operators = operators_of(mesh);
   for (const OperatorEntry<Mesh>* entry : operators)
     if (name == entry->name) return *entry;
@@ -172,7 +172,7 @@ template <class Mesh>
 LibraryOperator<Mesh> library_operator(const Mesh& mesh, const OperatorOptions& options) {
   const OperatorChoice choice = default_choice(mesh, options.application);
   const OperatorEntry<Mesh>& entry =
-      choose_operator(mesh, options.name.empty() ? choice.name : options.name);
+      operator_named(mesh, options.name.empty() ? choice.name : options.name);
   refuse_unused(entry.name, entry.options, options);
   DiscretizationOptions library_options = to_library(options);
   if (options.name.empty()) {
@@ -183,16 +183,11 @@ LibraryOperator<Mesh> library_operator(const Mesh& mesh, const OperatorOptions& 
 }
 
 template <class Mesh>
-EngineProblem problem_of(Session& session, const Mesh& mesh, const OperatorOptions& options,
-                         DiscretizationParts parts, const std::string& coefficient,
-                         Matrix of_cells) {
+ChosenOperator report_choice(Session& session, const Mesh& mesh, const OperatorOptions& options) {
   LibraryOperator<Mesh> chosen = library_operator(mesh, options);
-  chosen.options.parts = parts;
-  chosen.options.cell_coefficient = std::move(of_cells);
   session.report()["options"] =
       to_json(chosen.entry.name, chosen.entry.options, chosen.entry.settle(chosen.options));
-  session.report()["processes"] = session.engine()->n_processes();
-  return {&mesh, chosen.entry.name, std::move(chosen.options), coefficient};
+  return {chosen.entry.name, std::move(chosen.options)};
 }
 
 template <class Mesh>
@@ -327,16 +322,14 @@ Discretization discretize(Session& session, const PolyhedralMesh& mesh,
   return discretize_mesh(session, mesh, options, parts, coefficient, poisson);
 }
 
-EngineProblem engine_problem(Session& session, const PolygonMesh& mesh,
-                             const OperatorOptions& options, DiscretizationParts parts,
-                             const std::string& coefficient, Matrix of_cells) {
-  return problem_of(session, mesh, options, parts, coefficient, std::move(of_cells));
+ChosenOperator choose_operator(Session& session, const PolygonMesh& mesh,
+                               const OperatorOptions& options) {
+  return report_choice(session, mesh, options);
 }
 
-EngineProblem engine_problem(Session& session, const PolyhedralMesh& mesh,
-                             const OperatorOptions& options, DiscretizationParts parts,
-                             const std::string& coefficient, Matrix of_cells) {
-  return problem_of(session, mesh, options, parts, coefficient, std::move(of_cells));
+ChosenOperator choose_operator(Session& session, const PolyhedralMesh& mesh,
+                               const OperatorOptions& options) {
+  return report_choice(session, mesh, options);
 }
 
 }  // namespace carat::cli

@@ -51,12 +51,14 @@ Discretization discretize(Session& session, const PolyhedralMesh& mesh,
                           const Coefficient& coefficient = {},
                           const SolverOptions* poisson = nullptr);
 
-/// The same for an engine: reports the options, assembles nothing.
-EngineProblem engine_problem(Session& session, const PolygonMesh& mesh,
-                             const OperatorOptions& options, DiscretizationParts parts,
-                             const std::string& coefficient = {}, Matrix of_cells = {});
-EngineProblem engine_problem(Session& session, const PolyhedralMesh& mesh,
-                             const OperatorOptions& options, DiscretizationParts parts,
-                             const std::string& coefficient = {}, Matrix of_cells = {});
+/// The operator and its options as the library takes them, which are reported.
+struct ChosenOperator {
+  std::string name;
+  DiscretizationOptions options;
+};
+ChosenOperator choose_operator(Session& session, const PolygonMesh& mesh,
+                               const OperatorOptions& options);
+ChosenOperator choose_operator(Session& session, const PolyhedralMesh& mesh,
+                               const OperatorOptions& options);
 
 }  // namespace carat::cli

@@ -1,11 +1,12 @@
 // carat operators: the matrices of a mesh as files.
 
+#include "cli/operators.h"
+
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -15,21 +16,14 @@
 #include "carat/io/matrix_market.h"
 #include "cli/command.h"
 #include "cli/files.h"
-#include "cli/operator_options.h"
 
 namespace carat::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
-  std::string input, output;
-  OperatorOptions discretization;
-};
-
-std::string sign_convention(const KindWords& kind, const Discretization& d,
+std::string sign_convention(const std::string& measure, const Discretization& d,
                             const OperatorClaims& claims) {
-  const std::string measure = kind.measure;
   std::string text =
       claims.semidefinite
           ? "stiffness S is symmetric positive semidefinite and integrated; laplacian L = -S is "
@@ -59,56 +53,6 @@ std::string frame_convention(Index dimension, const std::string& order) {
          "that runs along the edge in that direction";
 }
 
-/// A folder for files that are not complete. What is left in it is removed in the end.
-class TemporaryFolder {
- public:
-  /// Inside `target` if it exists (so that moving the files is a rename), else beside it.
-  explicit TemporaryFolder(const fs::path& target) : target_(target) {
-    std::error_code failure;
-    exists_ = fs::is_directory(target, failure);
-    if (!exists_ && fs::exists(target, failure))
-      throw IoError(target.string() + ": is no folder; name another one");
-    const fs::path parent = exists_                    ? target
-                            : target.has_parent_path() ? target.parent_path()
-                                                       : fs::path(".");
-    if (!fs::is_directory(parent, failure))
-      throw IoError(target.string() + ": the folder " + parent.string() +
-                    " does not exist; create it first");
-    path_ = parent / ((exists_ ? "operators" : target.filename().string()) + ".part" +
-                      std::to_string(::getpid()));
-    if (!fs::create_directory(path_, failure))
-      throw IoError(target.string() + ": cannot be written: " +
-                    (failure ? failure.message() : path_.string() + " is in the way; remove it"));
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
-  /// Moves everything to the target.
-  void publish(const std::vector<std::string>& files) const {
-    std::error_code ignored, failure;
-    for (const std::string& file : files)
-      if (fs::is_directory(target_ / file, ignored))
-        throw IoError((target_ / file).string() + ": is a folder; remove it");
-    if (exists_) {
-      for (const std::string& file : files)
-        if (!failure) fs::rename(path_ / file, target_ / file, failure);
-    } else {
-      fs::rename(path_, target_, failure);
-    }
-    if (failure) throw IoError(target_.string() + ": cannot be written: " + failure.message());
-  }
-
- private:
-  fs::path target_, path_;
-  bool exists_ = false;
-};
-
 void write_text(const fs::path& path, const std::string& content) {
   std::ofstream out(path);
   out << content;
@@ -136,22 +80,19 @@ std::string describe_unknowns(const Discretization& d) {
 std::vector<std::string> write_matrices(const fs::path& folder, const Discretization& d,
                                         const std::string& measure) {
   std::vector<std::string> files;
-  const auto write = [&](const std::string& name, const SparseMatrix& matrix,
-                         MatrixSymmetry symmetry, const std::string& comment) {
-    files.push_back(name + ".mtx");
-    write_matrix_market(folder / files.back(), matrix, symmetry, comment);
+  const auto write = [&](const MatrixFile& file, const SparseMatrix& matrix) {
+    files.push_back(file.name);
+    write_matrix_market(folder / file.name, matrix,
+                        file.symmetric ? MatrixSymmetry::Symmetric : MatrixSymmetry::General,
+                        file.comment);
   };
-  write("stiffness", d.stiffness, MatrixSymmetry::Symmetric,
-        d.name + " stiffness S, positive semidefinite; laplacian L = -S");
-  write("mass", d.mass, MatrixSymmetry::Symmetric, d.name + " mass M, sum = " + measure);
+  write(stiffness_file(d), d.stiffness);
+  write(mass_file(d, measure), d.mass);
   if (d.gradient_dimension > 0) {
-    write("gradient", d.gradient, MatrixSymmetry::General, d.name + " gradient G");
-    write("divergence", d.divergence(), MatrixSymmetry::General,
-          d.name + " divergence D = -G^T M_s, integrated");
+    write(gradient_file(d), d.gradient);
+    write(divergence_file(d), d.divergence());
   }
-  if (d.is_one_form())
-    write("inner_product", d.one_forms.inner_product, MatrixSymmetry::Symmetric,
-          d.name + " inner product M_s of one-forms");
+  if (d.is_one_form()) write(inner_product_file(d), d.one_forms.inner_product);
   if (d.extra.size() > 0) {
     files.emplace_back("unknowns.csv");
     write_text(folder / files.back(), describe_unknowns(d));
@@ -159,65 +100,136 @@ std::vector<std::string> write_matrices(const fs::path& folder, const Discretiza
   return files;
 }
 
-/// How the samples of a gradient with components along x, y, z are numbered.
-std::string sample_order(const PolygonMesh&, const Discretization&) { return ""; }
-
-std::string sample_order(const PolyhedralMesh& mesh, const Discretization& d) {
-  if (d.n_samples() == mesh.face_mesh().n_corners())
-    return "; samples are diamonds, ordered by the faces of the mesh and then by the sides of the "
-           "face";
-  return "";
-}
-
-const SurfaceOperator& entry_of(const PolygonMesh&, const std::string& name) {
-  return surface_operator(name);
-}
-const VolumeOperator& entry_of(const PolyhedralMesh&, const std::string& name) {
-  return volume_operator(name);
+/// Whether the samples are those of the sides of faces.
+bool has_samples_at_sides(const PolygonMesh&, const Discretization&) { return false; }
+bool has_samples_at_sides(const PolyhedralMesh& mesh, const Discretization& d) {
+  return d.n_samples() == mesh.face_mesh().n_corners();
 }
 
 template <class Mesh>
-void write_operators(Session& session, const Options& options, const Mesh& mesh) {
+void write_operators(Session& session, const OperatorsArguments& options, const Mesh& mesh) {
   const TemporaryFolder folder(options.output);
   const Discretization discretization =
       discretize(session, mesh, options.discretization, DiscretizationParts::Gradient);
-  const bool has_gradient = discretization.gradient_dimension > 0;
-  const OperatorClaims& claims = entry_of(mesh, discretization.name).claims;
+  const std::string measure = words(mesh).measure;
   std::vector<std::string> files = session.phase(
-      "write", [&] { return write_matrices(folder.path(), discretization, words(mesh).measure); });
-  if (!has_gradient) session.note("this operator has no gradient: stiffness and mass only");
-
-  files.push_back("operators.json");
-  Json& report = session.report();
-  report["sign_convention"] = sign_convention(words(mesh), discretization, claims);
-  if (has_gradient)
-    report["frame_convention"] =
-        frame_convention(discretization.gradient_dimension, sample_order(mesh, discretization));
-  report["output"] = options.output;
-  report["files"] = files;
-  write_text(folder.path() / files.back(), session.snapshot().dump(2) + "\n");
-  folder.publish(files);
-  session.say("written: " + options.output + "/ with stiffness S" +
-              (claims.semidefinite ? " (positive semidefinite)" : "") + ", mass M" +
-              (has_gradient ? ", gradient G, divergence D" : "") +
-              (has_gradient && claims.divergence_of_gradient ? ": -S = D G" : ""));
+      "write", [&] { return write_matrices(folder.path(), discretization, measure); });
+  publish_operators(session, options, folder, std::move(files), discretization,
+                    claims_of(mesh, discretization.name), measure,
+                    has_samples_at_sides(mesh, discretization));
 }
 
-void run(Session& session, const Options& options) {
+void run(Session& session, const OperatorsArguments& options) {
+  if (session.engine() != nullptr) {
+    session.engine()->operators(session, options);
+    return;
+  }
   const MeshData data = read_input(session, options.input);
   std::visit([&](const auto& held) { write_operators(session, options, held.mesh); }, data);
 }
 
 std::function<void(Session&)> declare(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<OperatorsArguments>();
   app.add_option("MESH", options->input, "The mesh")->required();
   app.add_option("-o,--output", options->output, "Folder for the files; created if missing")
       ->required();
+  declare_engine_option(app);
   declare_operator_options(app, options->discretization, std::nullopt);
   return [options](Session& session) { run(session, *options); };
 }
 
 }  // namespace
+
+TemporaryFolder::TemporaryFolder(const fs::path& target) : target_(target) {
+  std::error_code failure;
+  exists_ = fs::is_directory(target, failure);
+  if (!exists_ && fs::exists(target, failure))
+    throw IoError(target.string() + ": is no folder; name another one");
+  const fs::path parent = exists_                    ? target
+                          : target.has_parent_path() ? target.parent_path()
+                                                     : fs::path(".");
+  if (!fs::is_directory(parent, failure))
+    throw IoError(target.string() + ": the folder " + parent.string() +
+                  " does not exist; create it first");
+  path_ = parent / ((exists_ ? "operators" : target.filename().string()) + ".part" +
+                    std::to_string(::getpid()));
+  if (!fs::create_directory(path_, failure))
+    throw IoError(target.string() + ": cannot be written: " +
+                  (failure ? failure.message() : path_.string() + " is in the way; remove it"));
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+void TemporaryFolder::publish(const std::vector<std::string>& files) const {
+  std::error_code ignored, failure;
+  for (const std::string& file : files)
+    if (fs::is_directory(target_ / file, ignored))
+      throw IoError((target_ / file).string() + ": is a folder; remove it");
+  if (exists_) {
+    for (const std::string& file : files)
+      if (!failure) fs::rename(path_ / file, target_ / file, failure);
+  } else {
+    fs::rename(path_, target_, failure);
+  }
+  if (failure) throw IoError(target_.string() + ": cannot be written: " + failure.message());
+}
+
+MatrixFile stiffness_file(const Discretization& d) {
+  return {"stiffness.mtx", d.name + " stiffness S, positive semidefinite; laplacian L = -S", true};
+}
+
+MatrixFile mass_file(const Discretization& d, const std::string& measure) {
+  return {"mass.mtx", d.name + " mass M, sum = " + measure, true};
+}
+
+MatrixFile gradient_file(const Discretization& d) {
+  return {"gradient.mtx", d.name + " gradient G", false};
+}
+
+MatrixFile divergence_file(const Discretization& d) {
+  return {"divergence.mtx", d.name + " divergence D = -G^T M_s, integrated", false};
+}
+
+MatrixFile inner_product_file(const Discretization& d) {
+  return {"inner_product.mtx", d.name + " inner product M_s of one-forms", true};
+}
+
+void publish_operators(Session& session, const OperatorsArguments& arguments,
+                       const TemporaryFolder& folder, std::vector<std::string> files,
+                       const Discretization& d, const OperatorClaims& claims,
+                       const std::string& measure, bool faces_and_sides) {
+  const bool has_gradient = d.gradient_dimension > 0;
+  if (!has_gradient) session.note("this operator has no gradient: stiffness and mass only");
+  files.emplace_back("operators.json");
+  Json& report = session.report();
+  report["sign_convention"] = sign_convention(measure, d, claims);
+  if (has_gradient)
+    report["frame_convention"] = frame_convention(
+        d.gradient_dimension,
+        faces_and_sides
+            ? "; samples are diamonds, ordered by the faces of the mesh and then by the "
+              "sides of the face"
+            : "");
+  report["output"] = arguments.output;
+  report["files"] = files;
+  write_text(folder.path() / files.back(), session.snapshot().dump(2) + "\n");
+  folder.publish(files);
+  session.say("written: " + arguments.output + "/ with stiffness S" +
+              (claims.semidefinite ? " (positive semidefinite)" : "") + ", mass M" +
+              (has_gradient ? ", gradient G, divergence D" : "") +
+              (has_gradient && claims.divergence_of_gradient ? ": -S = D G" : ""));
+}
+
+const OperatorClaims& claims_of(const PolygonMesh&, const std::string& name) {
+  return surface_operator(name).claims;
+}
+
+const OperatorClaims& claims_of(const PolyhedralMesh&, const std::string& name) {
+  return volume_operator(name).claims;
+}
 
 const Command operators_command = {
     "operators",

@@ -1,53 +1,22 @@
 // carat poisson: Poisson's equation with expressions for its data.
 
-#include "carat/apps/poisson.h"
+#include "cli/poisson.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
-#include <optional>
+#include <utility>
 
 #include "carat/base/error.h"
-#include "cli/boundary_data.h"
 #include "cli/command.h"
-#include "cli/expression.h"
-#include "cli/files.h"
 #include "cli/mesh_kinds.h"
-#include "cli/operator_options.h"
 
 namespace carat::cli {
 namespace {
 
-struct Options {
-  std::string input, output, solver = "auto";
-  std::string rhs, coefficient_field;
-  std::vector<std::string> dirichlet, neumann, robin;
-  std::optional<std::string> dirichlet_where, coefficient, exact;
-  OperatorOptions discretization;
-};
-
 std::optional<Expression> parse(const char* name, const std::optional<std::string>& text) {
   return text ? std::optional<Expression>(std::in_place, name, *text) : std::nullopt;
 }
-
-/// The expressions that were given, parsed before any work is done.
-struct Given {
-  Expression rhs;
-  BoundaryData boundary;
-  std::optional<Expression> coefficient, exact;
-
-  explicit Given(const Options& options)
-      : rhs("--rhs", options.rhs),
-        boundary{{"--dirichlet", options.dirichlet},
-                 {"--neumann", options.neumann},
-                 {"--robin", options.robin},
-                 parse("--dirichlet-where", options.dirichlet_where)},
-        coefficient(parse("--coefficient", options.coefficient)),
-        exact(parse("--exact", options.exact)) {
-    if (boundary.dirichlet_where && boundary.dirichlet.empty())
-      throw InvalidOption("--dirichlet-where says where but not what; add --dirichlet EXPR");
-  }
-};
 
 /// Values at the vertices and at the unknowns beyond them.
 Vector at_unknowns(const Expression& expression, const Points& vertices, const Discretization& d) {
@@ -105,102 +74,38 @@ void compare(Session& session, const Mesh& mesh, const Discretization& discretiz
       discretization.mass_product
           ? error_norms(*discretization.mass_product, u, reference)
           : error_norms(SparseMatrix(discretization.mass.topLeftCorner(n, n)), u, reference);
-  session.report()["errors"] = {{"rmse", errors.rmse}, {"l2", errors.l2}, {"max", errors.max}};
-  session.say("error against --exact: rmse " + text(errors.rmse) + ", L2 " + text(errors.l2) +
-              ", max " + text(errors.max));
+  report_errors(session, errors);
   fields.push_back(scalar_field("error", u - reference));
 }
 
-void report_solution(Session& session, const SolverInfo& info, const PoissonSolution& solution,
-                     const Vector& u) {
-  Json& report = session.report();
-  report["u"] = extremes(u);
-  report["relative_residual"] = solution.relative_residual;
-  report["floating_components"] = solution.floating_components;
-  report["imbalance"] = solution.imbalance;
-  report["errors"] = nullptr;
-  const SolveReport& how = solution.solve;
-  report["solver"] = {{"kind", solver_kind_name(info.kind)},
-                      {"method", how.method},
-                      {"reason", info.reason},
-                      {"ordering", info.ordering},
-                      {"factor_nnz", info.nonzeros},
-                      {"assembled", info.assembled},
-                      {"operator_bytes", info.operator_bytes},
-                      {"iterations", how.iterations},
-                      {"residual", how.residual}};
-  session.say("solver: " + how.method +
-              (how.iterations > 0 ? ", " + count(how.iterations, "iteration") : "") +
-              (info.reason.empty() ? "" : " (" + info.reason + ")"));
-  session.say("u: " + describe_extremes(u) + ", relative residual " +
-              text(solution.relative_residual));
-  if (solution.floating_components > 0)
-    session.say(count(solution.floating_components, "component") +
-                " without Dirichlet or Robin data: mean zero there; imbalance of the data " +
-                text(solution.imbalance) + ", subtracted");
-}
-
-void report_conditions(Session& session, const BoundaryConditions& conditions,
-                       const std::string& side) {
-  Json& sizes = session.report()["sizes"];
-  const std::string sides = side + "s";
-  sizes["dirichlet_vertices"] = conditions.dirichlet_vertices.size();
-  sizes["neumann_" + sides] = conditions.neumann_sides.size();
-  sizes["robin_" + sides] = conditions.robin_sides.size();
-  const auto number = [](const auto& list) { return static_cast<std::int64_t>(list.size()); };
-  session.say(count(number(conditions.dirichlet_vertices), "Dirichlet vertex") + ", " +
-              count(number(conditions.neumann_sides), "Neumann " + side) + ", " +
-              count(number(conditions.robin_sides), "Robin " + side));
-}
-
-/// Over several processes: writes u, not its gradient.
-template <class Data>
-void solve_by_engine(Session& session, const Options& options, const Given& given,
-                     const BoundaryConditions& conditions, Data& data) {
-  if (options.solver != "auto")
-    throw InvalidOption("--solver " + options.solver +
-                        " is of the embedded engine; choose PETSc's by its options, e.g. -pc_type");
-  const EngineProblem problem = engine_problem(
-      session, data.mesh, options.discretization, DiscretizationParts::Matrices,
-      options.coefficient.value_or(""),
-      options.coefficient_field.empty() ? Matrix()
-                                        : cell_coefficient(data, options.coefficient_field));
-  const PoissonSolution solution = session.phase("solve", [&] {
-    return session.engine()->poisson(problem, conditions, given.rhs.at(data.mesh.points()));
-  });
-  report_conditions(session, conditions, words(data.mesh).side);
-  SolverInfo info;
-  info.reason = "processes: " + std::to_string(session.engine()->n_processes());
-  report_solution(session, info, solution, solution.values);
-  session.report()["solver"] = {{"kind", "petsc"},
-                                {"method", solution.solve.method},
-                                {"processes", session.engine()->n_processes()},
-                                {"iterations", solution.solve.iterations},
-                                {"residual", solution.solve.residual}};
-  data.fields.vertex = {scalar_field("u", solution.values)};
-  element_fields(data).clear();
-  if (given.exact)
-    compare(session, data.mesh,
-            discretize(session, data.mesh, options.discretization, DiscretizationParts::Matrices),
-            conditions, *given.exact, solution.values, data.fields.vertex);
-  write_output(session, options.output, "Poisson", std::move(data));
+Json to_json(const SolverInfo& info, const SolveReport& how) {
+  return {{"kind", solver_kind_name(info.kind)},
+          {"method", how.method},
+          {"reason", info.reason},
+          {"ordering", info.ordering},
+          {"factor_nnz", info.nonzeros},
+          {"assembled", info.assembled},
+          {"operator_bytes", info.operator_bytes},
+          {"iterations", how.iterations},
+          {"residual", how.residual}};
 }
 
 template <class Data>
-void solve(Session& session, const Options& options, const Given& given, Data& data) {
+void solve(Session& session, const PoissonArguments& options, const PoissonExpressions& given,
+           Data& data) {
   check_output_kind(options.output, words(data.mesh));
-  BoundaryConditions conditions = boundary_conditions(data, given.boundary);
-  if (session.engine() != nullptr) {
-    solve_by_engine(session, options, given, conditions, data);
-    return;
-  }
+  GivenConditions placed = boundary_conditions(
+      Boundary<std::decay_t<decltype(data.mesh)>>{data.mesh, boundary_sides(data.mesh),
+                                                  patches(data)},
+      given.boundary);
+  BoundaryConditions& conditions = placed.conditions;
   if (const Expression* const dirichlet = given.boundary.dirichlet.everywhere())
     conditions.dirichlet_function = *dirichlet;
   const bool writes = !options.output.empty();
   Coefficient coefficient;
   if (given.coefficient) coefficient.function = *given.coefficient;
   if (!options.coefficient_field.empty())
-    coefficient.of_cells = cell_coefficient(data, options.coefficient_field);
+    coefficient.of_cells = cell_coefficient(data.mesh, data.fields, options.coefficient_field);
   const SolverOptions solver{.kind = solver_kind(options.solver), .threads = session.threads()};
   const Discretization discretization = discretize(
       session, data.mesh, options.discretization,
@@ -210,9 +115,10 @@ void solve(Session& session, const Options& options, const Given& given, Data& d
       "factor", [&] { return Poisson(data.mesh, discretization, conditions, solver); });
   const PoissonSolution solution = session.phase("solve", [&] { return poisson.solve(f); });
 
-  report_conditions(session, conditions, words(data.mesh).side);
+  report_conditions(session, placed, words(data.mesh).side);
   const Vector u = solution.values.head(data.mesh.n_vertices());
-  report_solution(session, poisson.solver(), solution, u);
+  report_solution(session, solution, extremes(u), to_json(poisson.solver(), solution.solve),
+                  poisson.solver().reason);
   session.moved("factor", setup_bytes(poisson.solver()));
   session.moved("solve", solution.solve.traffic);
   data.fields.vertex = {scalar_field("u", u)};
@@ -221,7 +127,7 @@ void solve(Session& session, const Options& options, const Given& given, Data& d
     compare(session, data.mesh, discretization, conditions, *given.exact, u, data.fields.vertex);
   if (!writes) return;
   if (discretization.gradient_dimension == 0) {
-    session.note("the operator " + discretization.name + " defines no gradient: u only");
+    note_no_gradient(session, discretization.name);
     write_output(session, options.output, "Poisson", std::move(data));
     return;
   }
@@ -232,15 +138,19 @@ void solve(Session& session, const Options& options, const Given& given, Data& d
   write_output(session, options.output, "Poisson", std::move(data));
 }
 
-void run(Session& session, const Options& options) {
-  const Given given(options);
+void run(Session& session, const PoissonArguments& options) {
+  if (session.engine() != nullptr) {
+    session.engine()->poisson(session, options);
+    return;
+  }
+  const PoissonExpressions given(options);
   check_output(options.output, Content::MeshFields);
   MeshData data = read_input(session, options.input);
   std::visit([&](auto& held) { solve(session, options, given, held); }, data);
 }
 
 std::function<void(Session&)> declare(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PoissonArguments>();
   app.add_option("MESH", options->input, "The mesh")->required();
   const auto add = [&](const char* name, auto& target, const char* description) {
     return app.add_option(name, target, description)->type_name("EXPR");
@@ -289,6 +199,60 @@ std::function<void(Session&)> declare(CLI::App& app) {
 }
 
 }  // namespace
+
+PoissonExpressions::PoissonExpressions(const PoissonArguments& arguments)
+    : rhs("--rhs", arguments.rhs),
+      boundary{{"--dirichlet", arguments.dirichlet},
+               {"--neumann", arguments.neumann},
+               {"--robin", arguments.robin},
+               parse("--dirichlet-where", arguments.dirichlet_where)},
+      coefficient(parse("--coefficient", arguments.coefficient)),
+      exact(parse("--exact", arguments.exact)) {
+  if (boundary.dirichlet_where && boundary.dirichlet.empty())
+    throw InvalidOption("--dirichlet-where says where but not what; add --dirichlet EXPR");
+}
+
+void report_conditions(Session& session, const GivenConditions& conditions,
+                       const std::string& side) {
+  Json& sizes = session.report()["sizes"];
+  const std::string sides = side + "s";
+  sizes["dirichlet_vertices"] = conditions.n_dirichlet;
+  sizes["neumann_" + sides] = conditions.n_neumann;
+  sizes["robin_" + sides] = conditions.n_robin;
+  session.say(count(conditions.n_dirichlet, "Dirichlet vertex") + ", " +
+              count(conditions.n_neumann, "Neumann " + side) + ", " +
+              count(conditions.n_robin, "Robin " + side));
+}
+
+void report_solution(Session& session, const PoissonSolution& solution, const Extremes& u,
+                     Json solver, const std::string& reason) {
+  Json& report = session.report();
+  report["u"] = to_json(u);
+  report["relative_residual"] = solution.relative_residual;
+  report["floating_components"] = solution.floating_components;
+  report["imbalance"] = solution.imbalance;
+  report["errors"] = nullptr;
+  const SolveReport& how = solution.solve;
+  report["solver"] = std::move(solver);
+  session.say("solver: " + how.method +
+              (how.iterations > 0 ? ", " + count(how.iterations, "iteration") : "") +
+              (reason.empty() ? "" : " (" + reason + ")"));
+  session.say("u: " + in_words(u) + ", relative residual " + text(solution.relative_residual));
+  if (solution.floating_components > 0)
+    session.say(count(solution.floating_components, "component") +
+                " without Dirichlet or Robin data: mean zero there; imbalance of the data " +
+                text(solution.imbalance) + ", subtracted");
+}
+
+void report_errors(Session& session, const ErrorNorms& errors) {
+  session.report()["errors"] = {{"rmse", errors.rmse}, {"l2", errors.l2}, {"max", errors.max}};
+  session.say("error against --exact: rmse " + text(errors.rmse) + ", L2 " + text(errors.l2) +
+              ", max " + text(errors.max));
+}
+
+void note_no_gradient(Session& session, const std::string& operator_name) {
+  session.note("the operator " + operator_name + " defines no gradient: u only");
+}
 
 const Command poisson_command = {
     "poisson",

@@ -91,7 +91,7 @@ void limit_blas_threads(int threads) {
     set(resolve_threads(threads));
 }
 
-int run_command(const Command& command, std::vector<std::string> arguments, Engine* engine) {
+int run_command(const Command& command, std::vector<std::string> arguments, const Engine* engine) {
   CLI::App app(std::string(command.title) + ".\n" + command.details,
                "carat " + std::string(command.name));
   app.footer("\nExamples:\n" + std::string(command.examples));
@@ -122,17 +122,9 @@ int run_command(const Command& command, std::vector<std::string> arguments, Engi
     session.finish();
     return session.exit_code();
   } catch (const std::exception& error) {
+    if (engine != nullptr) throw;
     return report_failure(describe_failure(error), json);
   }
-}
-
-/// Whether --engine petsc is among the arguments.
-bool asks_for_petsc(const std::vector<std::string>& arguments) {
-  for (std::size_t k = 0; k < arguments.size(); ++k)
-    if (arguments[k] == "--engine=petsc" ||
-        (arguments[k] == "--engine" && k + 1 < arguments.size() && arguments[k + 1] == "petsc"))
-      return true;
-  return false;
 }
 
 /// Becomes the program with the engine, which lies beside this one. \return only if there is none
@@ -152,7 +144,15 @@ Failure start_petsc(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-int run_program(std::vector<std::string> arguments, Engine* engine) {
+bool asks_for_petsc(const std::vector<std::string>& arguments) {
+  for (std::size_t k = 0; k < arguments.size(); ++k)
+    if (arguments[k] == "--engine=petsc" ||
+        (arguments[k] == "--engine" && k + 1 < arguments.size() && arguments[k + 1] == "petsc"))
+      return true;
+  return false;
+}
+
+int run_program(std::vector<std::string> arguments, const Engine* engine) {
   if (arguments.empty()) {
     print_help();
     return kUsage;
@@ -182,10 +182,10 @@ int run_program(std::vector<std::string> arguments, Engine* engine) {
 void declare_engine_option(CLI::App& app) {
   app.add_option_function<std::string>(
          "--engine", [](const std::string&) {},
-         "What solves: embedded, by itself, or petsc, over all\n"
-         "processes of a job (mpirun -np N carat ...); options of\n"
-         "PETSc and SLEPc are those with one dash, e.g.\n"
-         "-ksp_monitor, and come last")
+         "What works: embedded, by itself, or petsc, over all\n"
+         "processes of a job (mpirun -np N carat ...), with outputs\n"
+         "also in parts (.pvtu, .pvtp); options of PETSc and SLEPc\n"
+         "are those with one dash, e.g. -ksp_monitor, and come last")
       ->check(CLI::IsMember({"embedded", "petsc"}))
       ->type_name("NAME")
       ->default_str("embedded");

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <iostream>
 #include <string_view>
 #include <utility>
 
@@ -44,10 +45,13 @@ void ProgressLine::draw(const std::stop_token& stop) {
   int steps = 0;
   while (!ended_.wait_for(lock, stop, kPause, [] { return false; }) && !stop.stop_requested()) {
     ++steps;
-    std::fprintf(stderr, "\r\033[K%c %s %.1f s ", spokes[static_cast<std::size_t>(steps) % 4],
-                 phase_.c_str(), static_cast<double>(steps * kPause.count()) / 1000);
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, " %.1f s ",
+                  static_cast<double>(steps * kPause.count()) / 1000);
+    std::cerr << "\r\033[K" << spokes[static_cast<std::size_t>(steps) % 4] << ' ' << phase_
+              << seconds;
   }
-  if (steps > 0) std::fprintf(stderr, "\r\033[K");
+  if (steps > 0) std::cerr << "\r\033[K";
 }
 
 }  // namespace carat::cli

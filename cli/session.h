@@ -21,8 +21,8 @@ class Engine;
 /// What every command understands.
 struct CommonOptions {
   bool json = false;
-  int threads = 0;           ///< 0: all the machine has
-  Engine* engine = nullptr;  ///< what solves over several processes, if that was asked for
+  int threads = 0;                 ///< 0: all the machine has
+  const Engine* engine = nullptr;  ///< what solves over several processes, if that was asked for
 };
 
 /// Collects the JSON object of a run, or prints lines for people as they come. Numbers that are
@@ -32,7 +32,7 @@ class Session {
   Session(const std::string& command, const CommonOptions& options);
 
   int threads() const { return options_.threads; }
-  Engine* engine() const { return options_.engine; }
+  const Engine* engine() const { return options_.engine; }
   /// The JSON object. Filled in both modes; printed by finish() in one.
   Json& report() { return report_; }
   /// A line on standard output, unless JSON is asked for.

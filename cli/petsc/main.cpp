@@ -1,5 +1,8 @@
 // The program carat-petsc: carat with an engine over all processes of an MPI job.
 
+#include <algorithm>
+#include <iostream>
+#include <streambuf>
 #include <string>
 #include <vector>
 
@@ -32,14 +35,46 @@ std::vector<std::string> own_arguments(int argc, char** argv) {
   return own;
 }
 
+/// Takes what all but the first process would print, as all run the same program.
+class Silence {
+ public:
+  explicit Silence(bool silent) {
+    if (!silent) return;
+    output_ = std::cout.rdbuf(&nothing_);
+    errors_ = std::cerr.rdbuf(&nothing_);
+  }
+  ~Silence() { end(); }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+  void end() {
+    if (output_ == nullptr) return;
+    std::cout.rdbuf(output_);
+    std::cerr.rdbuf(errors_);
+    output_ = nullptr;
+  }
+
+ private:
+  struct Nothing final : std::streambuf {
+    int overflow(int c) override { return traits_type::not_eof(c); }
+  };
+  Nothing nothing_;
+  std::streambuf *output_ = nullptr, *errors_ = nullptr;
+};
+
 int run(int argc, char** argv) {
   const Processes processes({argv, argv + argc});
-  if (processes.rank() > 0) {
-    work_on_parts();
-    return 0;
-  }
-  PartEngine engine(processes.size());
-  return run_program(own_arguments(argc, argv), &engine);
+  const std::vector<std::string> arguments = own_arguments(argc, argv);
+  const bool first = processes.rank() == 0;
+  // Without an engine a command is one process's work.
+  if (!first && !asks_for_petsc(arguments)) return kSuccess;
+  const bool json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
+  Silence silence(!first);
+  const PartEngine engine;
+  return run_processes([&] { return run_program(arguments, &engine); },
+                       [&](const std::exception& error) {
+                         silence.end();
+                         return report_failure(describe_failure(error), json);
+                       });
 }
 
 }  // namespace
