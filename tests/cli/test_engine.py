@@ -1,4 +1,5 @@
-"""--engine petsc: over several processes the answers of one. Takes mpirun as second argument."""
+"""--engine petsc: over several processes the answers of one. Takes mpirun as second argument, and
+which tests: Engine, EngineFull."""
 
 import json
 import os
@@ -14,7 +15,7 @@ os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"
                   OMPI_MCA_rmaps_base_oversubscribe="1", OPENBLAS_NUM_THREADS="1")
 
 
-class Engine(CaratTest):
+class EngineTest(CaratTest):
     def job(self, n, *arguments):
         return subprocess.run(
             [MPIRUN, "-np", str(n), PROGRAM, "--engine", "petsc", *map(str, arguments)],
@@ -91,28 +92,19 @@ class Engine(CaratTest):
                 self.assertEqual(many["diagnostics"], one["diagnostics"])
                 self.assertEqual(many["options"], one["options"])
 
+    def fail_once(self, n, code, words, *arguments):
+        """The error of a job, which one process tells."""
+        run = self.job(n, *arguments, "--json")
+        self.assertEqual(run.returncode, code, run.stderr)
+        ours = [line for line in run.stderr.splitlines() if line.startswith("carat: ")]
+        self.assertEqual(len(ours), 1, run.stderr)
+        self.assertIn(words, ours[0])
+        start = run.stdout.index("{")
+        error = json.JSONDecoder().raw_decode(run.stdout[start:])[0]["error"]
+        self.assertIn(words, error["message"])
+        return error
+
     U = {("V", "u")}
-
-    def test_poisson_on_a_surface(self):
-        mesh = self.generate("plane-voronoi", 2, "mesh.vtu")
-        gradients = {(of, f"gradient_{k}") for of in "VE" for k in "xyz"}
-        self.compare(self.U | gradients | {("V", "error")}, [1, 3], ".ply", "poisson", mesh,
-                     "--rhs", "1+x", "--dirichlet", "x", "--dirichlet-where", "y<0.5", "--robin",
-                     "2", "--neumann", "cos(x)", "--coefficient", "1+x*y", "--exact", "x")
-
-    def test_floating_means_are_those_of_the_whole(self):
-        mesh = self.generate("sphere-hexagons", 1, "mesh.vtu")
-        self.compare(self.U | {("V", "error")}, [3], ".ply", "poisson", mesh, "--rhs", "2*z",
-                     "--exact", "z+5", "--operator", "bunge")
-
-    def test_poisson_in_a_volume(self):
-        mesh = self.generate("ball-voronoi", 1, "mesh.vtu")
-        gradients = {(of, "gradient") for of in "VE"}
-        self.compare(self.U | gradients, [3], ".ovm", "poisson", mesh, "--rhs", "1",
-                     "--dirichlet", "y", "--dirichlet-where", "x<0", "--operator",
-                     "stabilized_diamond")
-        self.compare(self.U | gradients, [2], ".ovm", "poisson", mesh, "--rhs", "x", "--operator",
-                     "bunge")
 
     def cube(self):
         """A cube of cubes with patches that meet, and K in the cells."""
@@ -139,17 +131,20 @@ class Engine(CaratTest):
             file.write(f'CProp double "K"\n{values}\n')
         return name
 
-    def test_patches_and_coefficients_of_cells(self):
-        mesh = self.cube()
-        data = ["--rhs", "1", "--dirichlet", "left=1+y", "--dirichlet", "front=z", "--robin",
-                "2", "--coefficient-field", "K"]
-        self.compare(self.U, [1, 4], ".ovm", "poisson", mesh, *data)
-        for n in [2]:
-            for code, words, more in [
-                    (2, "there is no boundary patch of this name", ["--neumann", "right=1"]),
-                    (2, "this patch has no faces", ["--neumann", "none=1"]),
-                    (2, "no such field of cells", ["--coefficient-field", "k"])]:
-                self.fail_once(n, code, words, "poisson", mesh, "--rhs", "1", *more)
+    def matrix(self, name):
+        data = (self.folder / name).read_bytes()
+        self.assertEqual(data[:6], b"\x93NUMPY")
+        end = 10 + struct.unpack_from("<H", data, 8)[0]
+        return struct.unpack(f"<{(len(data) - end) // 8}d", data[end:])
+
+
+class Engine(EngineTest):
+    def test_poisson_on_a_surface(self):
+        mesh = self.generate("plane-voronoi", 2, "mesh.vtu")
+        gradients = {(of, f"gradient_{k}") for of in "VE" for k in "xyz"}
+        self.compare(self.U | gradients | {("V", "error")}, [1, 3], ".ply", "poisson", mesh,
+                     "--rhs", "1+x", "--dirichlet", "x", "--dirichlet-where", "y<0.5", "--robin",
+                     "2", "--neumann", "cos(x)", "--coefficient", "1+x*y", "--exact", "x")
 
     def test_meshes_in_parts(self):
         for family, level, suffix in [("plane-concave", 2, ".pvtp"), ("cube-hexahedra", 1, ".pvtu")]:
@@ -177,23 +172,88 @@ class Engine(CaratTest):
             self.fail_once(3, 2, "comes in parts", "eigen", "first" + suffix, "-o", "u.ply")
             self.fail_once(2, 2, "3", "eigen", "first" + suffix)
 
+    def test_geodesics_in_a_volume(self):
+        mesh = self.generate("ball-tets", 1, "mesh.vtu")
+        self.compare({("V", "distance"), ("E", "direction")}, [4], ".ovm", "geodesics", mesh,
+                     "--source", "3", "--edge-length", "mean")
+
+    def test_report_says_what_solved(self):
+        mesh = self.generate("plane-quads", 2, "mesh.vtu")
+        solver = self.job_report(2, "poisson", mesh, "--rhs", "1", "--dirichlet", "0")["solver"]
+        self.assertEqual((solver["kind"], solver["processes"]), ("petsc", 2))
+        self.assertLess(solver["residual"], 1e-10)
+
+    def test_options_of_petsc_count(self):
+        mesh = self.generate("plane-quads", 2, "mesh.vtu")
+        output = self.finish(2, "poisson", mesh, "--rhs", "1", "--dirichlet", "0", "-pc_type",
+                             "jacobi", "-ksp_converged_reason")
+        self.assertIn("jacobi", output)
+        self.assertIn("CONVERGED_RTOL", output)
+
+    def test_other_processes_are_silent(self):
+        run = self.job(3, "poisson", "--help")
+        self.assertEqual(run.returncode, 0)
+        self.assertEqual(run.stdout.count("Solve Poisson's equation"), 1)
+        mesh = self.generate("plane-quads", 1, "mesh.vtu")
+        output = self.finish(3, "operators", mesh, "-o", "folder", "--operator", "vem")
+        self.assertEqual(output.count("written"), 1)
+        output = subprocess.run([MPIRUN, "-np", "2", PROGRAM + "-petsc", "info", mesh],
+                                cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(output.stdout.count("box"), 1)
+
+    def test_a_failure_leaves_the_last_output(self):
+        mesh = self.generate("plane-quads", 2, "mesh.vtu")
+        solve = ["poisson", mesh, "--rhs", "1", "-o", "u.pvtp"]
+        self.finish(2, *solve, "--dirichlet", "0")
+        before = {f: (self.folder / f).read_bytes() for f in self.files()}
+        self.fail_once(2, 4, "no solution exists", *solve)
+        # The name of a piece is taken by a folder, which only the last process meets.
+        (self.folder / "v_1.vtp").mkdir()
+        self.fail_once(2, 3, "is a folder", *solve[:-1], "v.pvtp", "--dirichlet", "0")
+        self.assertEqual([f for f in self.files() if f[0] == "v"], ["v_1.vtp"])
+        self.assertEqual(before, {f: (self.folder / f).read_bytes() for f in before})
+        self.assertEqual([f for f in self.files() if ".part" in f], [])
+
+
+class EngineFull(EngineTest):
+    def test_floating_means_are_those_of_the_whole(self):
+        mesh = self.generate("sphere-hexagons", 1, "mesh.vtu")
+        self.compare(self.U | {("V", "error")}, [3], ".ply", "poisson", mesh, "--rhs", "2*z",
+                     "--exact", "z+5", "--operator", "bunge")
+
+    def test_poisson_in_a_volume(self):
+        mesh = self.generate("ball-voronoi", 1, "mesh.vtu")
+        gradients = {(of, "gradient") for of in "VE"}
+        self.compare(self.U | gradients, [3], ".ovm", "poisson", mesh, "--rhs", "1",
+                     "--dirichlet", "y", "--dirichlet-where", "x<0", "--operator",
+                     "stabilized_diamond")
+        self.compare(self.U | gradients, [2], ".ovm", "poisson", mesh, "--rhs", "x", "--operator",
+                     "bunge")
+
+    def test_patches_and_coefficients_of_cells(self):
+        mesh = self.cube()
+        data = ["--rhs", "1", "--dirichlet", "left=1+y", "--dirichlet", "front=z", "--robin",
+                "2", "--coefficient-field", "K"]
+        self.compare(self.U, [1, 4], ".ovm", "poisson", mesh, *data)
+        self.succeed("partition", mesh, "-n", "3", "-o", "cube.cparts")
+        one = self.report("poisson", mesh, *data, "-o", "one.ovm")
+        many = self.job_report(3, "poisson", "cube.cparts", *data, "-o", "many.pvtu")
+        self.assertEqual(many["sizes"]["dirichlet_vertices"], one["sizes"]["dirichlet_vertices"])
+        self.assertEqual(many["sizes"]["robin_faces"], one["sizes"]["robin_faces"])
+        parts = self.fields("many.pvtu")
+        for name, values in self.fields("one.ovm").items():
+            self.assert_same(values, parts[name], 1e-8, name)
+        for words, more in [("there is no boundary patch of this name", ["--neumann", "right=1"]),
+                            ("this patch has no faces", ["--neumann", "none=1"]),
+                            ("no such field of cells", ["--coefficient-field", "k"])]:
+            self.fail_once(3, 2, words, "poisson", "cube.cparts", "--rhs", "1", *more)
+
     def test_geodesics(self):
         mesh = self.generate("sphere-hexagons", 2, "mesh.vtu")
         self.compare({("V", "distance"), ("E", "direction_x")}, [1, 3], ".ply", "geodesics", mesh,
                      "--source", "3", "--source", "50")
         self.compare({("V", "distance")}, [2], ".ply", "geodesics", mesh, "--source", "3",
                      "--edge-length", "mean", "--directions", "elements", "--t-coef", "3")
-
-    def test_geodesics_in_a_volume(self):
-        mesh = self.generate("ball-tets", 1, "mesh.vtu")
-        self.compare({("V", "distance"), ("E", "direction")}, [4], ".ovm", "geodesics", mesh,
-                     "--source", "3", "--edge-length", "mean")
-
-    def matrix(self, name):
-        data = (self.folder / name).read_bytes()
-        self.assertEqual(data[:6], b"\x93NUMPY")
-        end = 10 + struct.unpack_from("<H", data, 8)[0]
-        return struct.unpack(f"<{(len(data) - end) // 8}d", data[end:])
 
     def test_distances_from_each_source(self):
         mesh = self.generate("plane-quads", 2, "mesh.vtu")
@@ -250,42 +310,6 @@ class Engine(CaratTest):
                 worst = max(abs(value - b[2][place]) for place, value in a[2].items())
                 self.assertLess(worst, 1e-13 * scale, (mesh, more, file))
         self.assertEqual([f for f in self.files() if "part" in f], [])
-
-    def test_report_says_what_solved(self):
-        mesh = self.generate("plane-quads", 2, "mesh.vtu")
-        solver = self.job_report(2, "poisson", mesh, "--rhs", "1", "--dirichlet", "0")["solver"]
-        self.assertEqual((solver["kind"], solver["processes"]), ("petsc", 2))
-        self.assertLess(solver["residual"], 1e-10)
-
-    def test_options_of_petsc_count(self):
-        mesh = self.generate("plane-quads", 2, "mesh.vtu")
-        output = self.finish(2, "poisson", mesh, "--rhs", "1", "--dirichlet", "0", "-pc_type",
-                             "jacobi", "-ksp_converged_reason")
-        self.assertIn("jacobi", output)
-        self.assertIn("CONVERGED_RTOL", output)
-
-    def test_other_processes_are_silent(self):
-        run = self.job(3, "poisson", "--help")
-        self.assertEqual(run.returncode, 0)
-        self.assertEqual(run.stdout.count("Solve Poisson's equation"), 1)
-        mesh = self.generate("plane-quads", 1, "mesh.vtu")
-        output = self.finish(3, "operators", mesh, "-o", "folder", "--operator", "vem")
-        self.assertEqual(output.count("written"), 1)
-        output = subprocess.run([MPIRUN, "-np", "2", PROGRAM + "-petsc", "info", mesh],
-                                cwd=self.folder, capture_output=True, text=True, timeout=60)
-        self.assertEqual(output.stdout.count("box"), 1)
-
-    def fail_once(self, n, code, words, *arguments):
-        """The error of a job, which one process tells."""
-        run = self.job(n, *arguments, "--json")
-        self.assertEqual(run.returncode, code, run.stderr)
-        ours = [line for line in run.stderr.splitlines() if line.startswith("carat: ")]
-        self.assertEqual(len(ours), 1, run.stderr)
-        self.assertIn(words, ours[0])
-        start = run.stdout.index("{")
-        error = json.JSONDecoder().raw_decode(run.stdout[start:])[0]["error"]
-        self.assertIn(words, error["message"])
-        return error
 
     def test_failures_end_the_job_with_one_message(self):
         mesh = self.generate("plane-quads", 2, "mesh.vtu")
@@ -344,19 +368,6 @@ class Engine(CaratTest):
                                    "--dirichlet", "0", "--coefficient-field", "K", "--operator",
                                    name)
             self.assertEqual(error["elements"], [54])
-
-    def test_a_failure_leaves_the_last_output(self):
-        mesh = self.generate("plane-quads", 2, "mesh.vtu")
-        solve = ["poisson", mesh, "--rhs", "1", "-o", "u.pvtp"]
-        self.finish(2, *solve, "--dirichlet", "0")
-        before = {f: (self.folder / f).read_bytes() for f in self.files()}
-        self.fail_once(2, 4, "no solution exists", *solve)
-        # The name of a piece is taken by a folder, which only the last process meets.
-        (self.folder / "v_1.vtp").mkdir()
-        self.fail_once(2, 3, "is a folder", *solve[:-1], "v.pvtp", "--dirichlet", "0")
-        self.assertEqual([f for f in self.files() if f[0] == "v"], ["v_1.vtp"])
-        self.assertEqual(before, {f: (self.folder / f).read_bytes() for f in before})
-        self.assertEqual([f for f in self.files() if ".part" in f], [])
 
 
 if __name__ == "__main__":
