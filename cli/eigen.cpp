@@ -72,6 +72,8 @@ void run(Session& session, const EigenArguments& options) {
     session.engine()->eigen(session, options);
     return;
   }
+  if (!options.checkpoint.empty())
+    throw InvalidOption("--checkpoint is for runs over several processes; add --engine petsc");
   check_output(options.output, Content::MeshFields);
   MeshData data = read_input(session, options.input);
   std::visit([&](auto& held) { find_modes(session, options, held); }, data);
@@ -93,6 +95,12 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "in small volumes, with conjugate gradients in large ones.\n"
                  "Others: cholesky, iterative")
       ->type_name("NAME");
+  app.add_option("--checkpoint", options->checkpoint,
+                 "With --engine petsc: keep the pairs found so far in this\n"
+                 "file. The same command goes on from there after it ended\n"
+                 "early, also with another number of processes; the file is\n"
+                 "removed in the end")
+      ->type_name("FILE");
   declare_engine_option(app);
   declare_operator_options(app, options->discretization, Application::Eigenmodes);
   return [options](Session& session) { run(session, *options); };
@@ -146,7 +154,9 @@ const Command eigen_command = {
     "Without --dirichlet every component of the mesh has lambda = 0 once.",
     "  carat eigen bunny.obj -k 20 -o modes.html\n"
     "  carat eigen ball.vtu -k 34 --dirichlet -o modes.vtu\n"
-    "  carat eigen case -k 5 --operator bunge --lumped --json\n",
+    "  carat eigen case -k 5 --operator bunge --lumped --json\n"
+    "  mpirun -np 8 carat --engine petsc eigen parts/mesh.pvtu -k 500 --checkpoint pairs -o "
+    "modes.pvtu\n",
     true,
     declare};
 

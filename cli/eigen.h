@@ -12,7 +12,7 @@
 namespace carat::cli {
 
 struct EigenArguments {
-  std::string input, output, solver = "auto";
+  std::string input, output, checkpoint, solver = "auto";
   Index count = 10;
   bool dirichlet = false;
   OperatorOptions discretization;

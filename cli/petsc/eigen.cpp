@@ -2,6 +2,9 @@
 
 #include "cli/eigen.h"
 
+#include <filesystem>
+#include <system_error>
+
 #include "carat/base/error.h"
 #include "carat/distributed/eigenmodes.h"
 #include "cli/petsc/part_engine.h"
@@ -36,7 +39,8 @@ void find_modes(Session& session, const EigenArguments& arguments, PartInput& in
   const Discretization discretization =
       discretize(session, part, arguments.discretization, DiscretizationParts::Matrices);
   const EigenPairs pairs = session.phase("solve", [&] {
-    return distributed_eigenmodes(part, discretization, arguments.count, fixed);
+    return distributed_eigenmodes(part, discretization, arguments.count, fixed,
+                                  arguments.checkpoint);
   });
   report_pairs(session, arguments, pairs,
                {{"kind", "slepc"},
@@ -46,6 +50,10 @@ void find_modes(Session& session, const EigenArguments& arguments, PartInput& in
   MeshFields fields;
   fields.vertex = mode_fields(pairs.vectors);
   write_part_output(session, arguments.output, "Eigenmodes", input, part, std::move(fields));
+  on_first([&] {
+    std::error_code ignored;
+    if (!arguments.checkpoint.empty()) std::filesystem::remove(arguments.checkpoint, ignored);
+  });
 }
 
 }  // namespace
@@ -60,6 +68,7 @@ void PartEngine::eigen(Session& session, const EigenArguments& arguments) const 
   });
   PartInput input = read_part_input(session, arguments.input, arguments.output);
   std::visit([&](const auto& data) { find_modes(session, arguments, input, data); }, input.data);
+  report_memory(session);
 }
 
 }  // namespace carat::cli

@@ -121,6 +121,7 @@ void PartEngine::geodesics(Session& session, const GeodesicsArguments& arguments
   PartInput input =
       read_part_input(session, arguments.input, arguments.writes_matrix() ? "" : arguments.output);
   std::visit([&](const auto& data) { measure(session, arguments, input, data); }, input.data);
+  report_memory(session);
 }
 
 }  // namespace carat::cli

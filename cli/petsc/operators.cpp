@@ -126,6 +126,7 @@ void PartEngine::operators(Session& session, const OperatorsArguments& arguments
   const PartInput input = read_part_input(session, arguments.input, "");
   std::visit([&](const auto& data) { write_operators(session, arguments, folder.get(), data); },
              input.data);
+  report_memory(session);
 }
 
 }  // namespace carat::cli

@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "carat/base/error.h"
+#include "carat/base/memory.h"
 #include "carat/distributed/number_exchange.h"
 #include "carat/distributed/part_fields.h"
 #include "carat/distributed/part_samples.h"
 #include "carat/distributed/partition.h"
+#include "carat/distributed/poisson.h"
 #include "carat/distributed/read_parts.h"
 #include "carat/distributed/scatter.h"
 #include "carat/distributed/write_parts.h"
@@ -105,6 +107,27 @@ std::vector<Field> gather_fields(const std::vector<Field>& fields, const Gather&
   return gathered;
 }
 
+/// Sizes of parts, and what they send.
+template <class Mesh>
+void report_share(Session& session, const MeshPart<Mesh>& part, const Discretization& d) {
+  const PartNumbers& numbers = part.numbers;
+  const PartShare share = share_of(d.stiffness, numbers);
+  const auto n_elements = static_cast<std::int64_t>(numbers.elements.size());
+  const std::int64_t own =
+      std::count(numbers.own_elements.begin(), numbers.own_elements.end(), true);
+  const auto others =
+      static_cast<std::int64_t>(numbers.vertices.size()) - (numbers.end_row - numbers.first_row);
+  const auto describe = [](std::int64_t value) -> Json {
+    return {{"largest", static_cast<std::int64_t>(largest_of_all(static_cast<double>(value)))},
+            {"sum", sum_of_all(value)}};
+  };
+  session.report()["parts"] = {{"own_elements", describe(own)},
+                               {"halo_elements", describe(n_elements - own)},
+                               {"vertices_of_others", describe(others)},
+                               {"stiffness_entries", describe(share.entries)},
+                               {"stiffness_bytes_sent", describe(share.bytes_sent())}};
+}
+
 }  // namespace
 
 void check_part_output(const std::string& path) {
@@ -151,12 +174,15 @@ PartInput read_part_input(Session& session, const std::string& path, const std::
 template <class Mesh>
 Discretization discretize(Session& session, const MeshPart<Mesh>& part,
                           const OperatorOptions& options, DiscretizationParts parts,
-                          const Coefficient& coefficient) {
+                          const Coefficient& coefficient, MatrixNeed need) {
   return session.phase("assemble", [&] {
     Discretization discretization;
+    ChosenOperator chosen;
     bool strict = false;
+    together([&] { chosen = choose_operator(session, part.mesh, options); });
+    if (need == MatrixNeed::Multiplied)
+      chosen.options.form = distributed_poisson_form(part, chosen.name);
     together([&] {
-      ChosenOperator chosen = choose_operator(session, part.mesh, options);
       chosen.options.parts = parts;
       chosen.options.coefficient = coefficient.function;
       chosen.options.cell_coefficient = coefficient.of_cells;
@@ -174,8 +200,15 @@ Discretization discretize(Session& session, const MeshPart<Mesh>& part,
                 ", " +
                 (n_processes() == 1 ? "1 process" : std::to_string(n_processes()) + " processes"));
     session.add_diagnostics(whole_diagnostics(part, discretization, strict));
+    report_share(session, part, discretization);
     return discretization;
   });
+}
+
+void report_memory(Session& session) {
+  const auto own = static_cast<double>(peak_memory());
+  session.report()["peak_memory_of_processes"] = {{"largest", largest_of_all(own)},
+                                                  {"sum", sum_of_all(own)}};
 }
 
 template <class Mesh>
@@ -249,9 +282,10 @@ void SharedBoundary::take_lowest(std::vector<int>& entry_of_vertex) const {
 }
 
 template Discretization discretize(Session&, const MeshPart<PolygonMesh>&, const OperatorOptions&,
-                                   DiscretizationParts, const Coefficient&);
+                                   DiscretizationParts, const Coefficient&, MatrixNeed);
 template Discretization discretize(Session&, const MeshPart<PolyhedralMesh>&,
-                                   const OperatorOptions&, DiscretizationParts, const Coefficient&);
+                                   const OperatorOptions&, DiscretizationParts, const Coefficient&,
+                                   MatrixNeed);
 template void write_part_output(Session&, const std::string&, const std::string&, PartInput&,
                                 const MeshPart<PolygonMesh>&, MeshFields);
 template void write_part_output(Session&, const std::string&, const std::string&, PartInput&,

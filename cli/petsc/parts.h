@@ -33,11 +33,19 @@ void check_part_output(const std::string& path);
 /// \throws Shared<...>  as read_mesh, read_parts; a single file of a mesh in parts
 PartInput read_part_input(Session& session, const std::string& path, const std::string& output);
 
-/// What the part brings to the operators. Reports the options, and what all found.
+/// What is done with matrices: products take their place where they are faster.
+enum class MatrixNeed { Entries, Multiplied };
+
+/// What the part brings to the operators. Reports the options, what all found, and how much of the
+/// stiffness crosses from process to process.
 template <class Mesh>
 Discretization discretize(Session& session, const MeshPart<Mesh>& part,
                           const OperatorOptions& options, DiscretizationParts parts,
-                          const Coefficient& coefficient = {});
+                          const Coefficient& coefficient = {},
+                          MatrixNeed need = MatrixNeed::Entries);
+
+/// Reports the peak memory of all processes: the largest, and the sum.
+void report_memory(Session& session);
 
 /// Writes fields of the part, with its mesh, as read_part_input() was told.
 template <class Mesh>

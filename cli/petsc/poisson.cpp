@@ -51,7 +51,7 @@ void solve(Session& session, const PoissonArguments& options, const PoissonExpre
   const Discretization discretization =
       discretize(session, part, options.discretization,
                  writes ? DiscretizationParts::Frames : DiscretizationParts::Matrices,
-                 coefficient_of(options, given, data));
+                 coefficient_of(options, given, data), MatrixNeed::Multiplied);
   Vector f;
   together([&] { f = given.rhs.at(part.mesh.points()); });
   const DistributedPoisson poisson = session.phase(
@@ -97,6 +97,7 @@ void PartEngine::poisson(Session& session, const PoissonArguments& arguments) co
   });
   PartInput input = read_part_input(session, arguments.input, arguments.output);
   std::visit([&](const auto& data) { solve(session, arguments, *given, input, data); }, input.data);
+  report_memory(session);
 }
 
 }  // namespace carat::cli
