@@ -27,9 +27,9 @@ using Lists = std::vector<std::vector<T>>;
 
 /// Collective. Sends bytes to every process and gives what they sent. Goes in rounds that MPI can
 /// count.
-/// \param most  bytes of a round
+/// \param most  bytes of a round; what it takes beside the lists
 Lists<char> exchange_bytes(const std::vector<std::span<const char>>& to,
-                           std::size_t most = std::size_t{1} << 28);
+                           std::size_t most = std::size_t{1} << 24);
 
 /// Collective. The same for lists of values.
 template <class T>
@@ -95,7 +95,7 @@ std::vector<Answer> ask(const std::vector<Question>& questions, const Owner& own
   Lists<Question> to(static_cast<std::size_t>(n_processes()));
   for (const Question& question : questions)
     to[static_cast<std::size_t>(owner(question))].push_back(question);
-  const Lists<Question> from = exchange(to);
+  Lists<Question> from = exchange(to);
   to.clear();
   Lists<Answer> answers(from.size());
   std::vector<Asked<Question>> asked;
@@ -103,13 +103,16 @@ std::vector<Answer> ask(const std::vector<Question>& questions, const Owner& own
     answers[p].resize(from[p].size());
     for (std::size_t k = 0; k < from[p].size(); ++k)
       asked.push_back({from[p][k], static_cast<int>(p), k});
+    from[p] = {};
   }
   together([&] {
     answer(asked, [&](const Asked<Question>& to_whom, const Answer& value) {
       answers[static_cast<std::size_t>(to_whom.process)][to_whom.place] = value;
     });
   });
+  asked = {};
   const Lists<Answer> got = exchange(answers);
+  answers.clear();
   std::vector<Answer> result;
   result.reserve(questions.size());
   std::vector<std::size_t> next(got.size(), 0);

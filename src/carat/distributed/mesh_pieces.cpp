@@ -93,15 +93,22 @@ void append_values(Array<double>& to, std::span<const double> from, std::size_t 
 /// Which bundle, and where in it.
 struct Place {
   Index number;
-  std::size_t bundle, row;
+  std::uint32_t bundle, row;
 };
 
 /// The places of all numbers, ascending, each once: in the first bundle that has it.
 std::vector<Place> places_of(const std::vector<Bundle>& bundles, Array<Index> Bundle::*numbers) {
   std::vector<Place> places;
+  std::size_t n = 0;
+  for (const Bundle& bundle : bundles) n += (bundle.*numbers).size();
+  if (n > kIndexLimit)
+    throw InvalidMesh("a part has more than " + std::to_string(kIndexLimit) +
+                      " corners; use more processes");
+  places.reserve(n);
   for (std::size_t b = 0; b < bundles.size(); ++b)
     for (std::size_t k = 0; k < (bundles[b].*numbers).size(); ++k)
-      places.push_back({(bundles[b].*numbers)[k], b, k});
+      places.push_back(
+          {(bundles[b].*numbers)[k], static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(k)});
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
     return std::tie(a.number, a.bundle, a.row) < std::tie(b.number, b.bundle, b.row);
   });
@@ -113,6 +120,7 @@ std::vector<Place> places_of(const std::vector<Bundle>& bundles, Array<Index> Bu
 
 Array<Index> numbers_of(const std::vector<Place>& places) {
   Array<Index> numbers;
+  numbers.reserve(places.size());
   for (const Place& place : places) numbers.push_back(place.number);
   return numbers;
 }
@@ -371,7 +379,7 @@ class Packer {
 
  private:
   const std::vector<Field>& fields_of_elements() const {
-    return element_fields(const_cast<MeshFields&>(piece_.fields), piece_.mesh);
+    return std::is_same_v<Mesh, PolygonMesh> ? piece_.fields.face : piece_.fields.cell;
   }
 
   Bundle empty() const {
@@ -457,39 +465,6 @@ PolyhedralMesh make_mesh(const std::vector<Bundle>& bundles, const std::vector<P
       collect(bundles, &Bundle::entries, elements, numbers.interfaces), std::move(face_cells));
 }
 
-template <class Mesh>
-PartData<Mesh> assemble(const std::vector<Bundle>& bundles, PartNumbers numbers,
-                        Array<Index> own_interfaces, const MeshPiece<Mesh>& shapes,
-                        std::vector<BoundaryPatch> patches) {
-  PartData<Mesh> data;
-  const std::vector<Place> elements = places_of(bundles, &Bundle::elements);
-  const std::vector<Place> vertices = places_of(bundles, &Bundle::vertices);
-  numbers.elements = numbers_of(elements);
-  numbers.vertices = numbers_of(vertices);
-  numbers.interfaces = numbers_of(places_of(bundles, &Bundle::interfaces));
-  for (const Place& place : elements) numbers.own_elements.push_back(place.bundle == 0);
-  std::sort(own_interfaces.begin(), own_interfaces.end());
-  for (const Index i : numbers.interfaces)
-    numbers.own_interfaces.push_back(find(own_interfaces, i) >= 0);
-  Points points(static_cast<Eigen::Index>(vertices.size()), 3);
-  for (std::size_t k = 0; k < vertices.size(); ++k) {
-    const Bundle& bundle = bundles[vertices[k].bundle];
-    numbers.vertex_rows.push_back(bundle.rows[vertices[k].row]);
-    numbers.vertex_components.push_back(bundle.components[vertices[k].row]);
-    for (std::size_t x = 0; x < 3; ++x)
-      points(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(x)) =
-          bundle.places[3 * vertices[k].row + x];
-  }
-  data.fields.vertex = collect(bundles, &Bundle::vertex_values, vertices, shapes.fields.vertex);
-  std::vector<Field>& of_elements = element_fields(data.fields, shapes.mesh);
-  of_elements = collect(bundles, &Bundle::element_values, elements,
-                        element_fields(const_cast<MeshFields&>(shapes.fields), shapes.mesh));
-  data.part.mesh = make_mesh(bundles, elements, numbers, std::move(points), patches, shapes.mesh);
-  data.part.numbers = std::move(numbers);
-  data.patches = std::move(patches);
-  return data;
-}
-
 InterfaceBook keep(const MeshPiece<PolygonMesh>& piece, const Numbering& vertices,
                    const Numbering& elements) {
   return keep_interfaces(piece.mesh, vertices, elements);
@@ -502,14 +477,27 @@ InterfaceBook keep(const MeshPiece<PolyhedralMesh>& piece, const Numbering& vert
   return keep_interfaces(piece.mesh, vertices, elements, piece.interface_ids, have_ids);
 }
 
+/// What a process has to make its part of.
+struct Packed {
+  std::vector<Bundle> bundles;  ///< its own elements, then those from others
+  Array<Index> own_interfaces;
+  PartNumbers numbers;                               ///< those of the whole mesh
+  std::vector<Field> vertex_fields, element_fields;  ///< without values
+  std::vector<BoundaryPatch> patches;                ///< without faces
+};
+
+/// Collective. The piece and all lists about it are gone when it returns.
 template <class Mesh>
-PartData<Mesh> join(MeshPiece<Mesh> piece) {
+Packed pack(MeshPiece<Mesh> piece) {
+  Packed packed;
   const auto n_vertices = static_cast<std::size_t>(piece.mesh.n_vertices());
   const auto n_own = static_cast<std::size_t>(n_elements(piece.mesh));
+  std::vector<Field>& of_elements = element_fields(piece.fields, piece.mesh);
   agree_on(piece.fields.vertex, n_vertices > 0, "vertex");
-  agree_on(element_fields(piece.fields, piece.mesh), n_own > 0, "element");
-  std::vector<BoundaryPatch> patches;
-  const std::vector<Index> patch_numbers = agree_on(piece.patches, patches);
+  agree_on(of_elements, n_own > 0, "element");
+  packed.vertex_fields = shapes_of(piece.fields.vertex);
+  packed.element_fields = shapes_of(of_elements);
+  const std::vector<Index> patch_numbers = agree_on(piece.patches, packed.patches);
 
   const std::vector<Index> component = components_of(piece.mesh);
   std::vector<bool> used(n_vertices);
@@ -523,16 +511,21 @@ PartData<Mesh> join(MeshPiece<Mesh> piece) {
   const VertexBook vertex_book = keep_vertices(
       vertices, piece.mesh.points(), elements_of_vertices(piece.mesh, elements), component);
   const InterfaceBook interface_book = keep(piece, vertices, elements);
-
+  const int rank = own_rank();
   const auto n = static_cast<std::size_t>(n_processes());
+  packed.numbers.part = rank;
+  packed.numbers.n_parts = static_cast<Index>(n);
+  packed.numbers.first_row = vertex_book.first_row;
+  packed.numbers.end_row = vertex_book.end_row;
+  packed.numbers.n_vertices = vertices.n;
+  packed.numbers.n_components = vertex_book.n_components;
+
   std::vector<Message> messages(n);
-  std::vector<Bundle> bundles(1);
-  Array<Index> own_interfaces;
   together([&] {
     Packer<Mesh> packer(piece, vertices, elements, vertex_book, interface_book, patch_numbers);
     std::vector<Index> list(n_own);
     std::iota(list.begin(), list.end(), 0);
-    bundles[0] = packer.pack(list);
+    packed.bundles.push_back(packer.pack(list));
     for (std::size_t k = 0, p = 0; p < n; ++p) {
       list.clear();
       for (;
@@ -543,30 +536,58 @@ PartData<Mesh> join(MeshPiece<Mesh> piece) {
       if (p == 0) put(messages[p], packer.pack_loose());
     }
     for (std::size_t i = 0; i < interface_book.numbers.size(); ++i)
-      if (interface_book.own[i]) own_interfaces.push_back(interface_book.numbers[i]);
+      if (interface_book.own[i]) packed.own_interfaces.push_back(interface_book.numbers[i]);
   });
-  const int rank = own_rank();
   for (Message& message : exchange(messages))
     for (int k = 0; k < (rank == 0 ? 2 : 1); ++k) {
       Bundle bundle;
-      bundle.vertex_values.resize(piece.fields.vertex.size());
-      bundle.element_values.resize(element_fields(piece.fields, piece.mesh).size());
+      bundle.vertex_values.resize(packed.vertex_fields.size());
+      bundle.element_values.resize(packed.element_fields.size());
       take(message, bundle);
-      bundles.push_back(std::move(bundle));
+      packed.bundles.push_back(std::move(bundle));
     }
+  return packed;
+}
 
-  PartNumbers numbers;
-  numbers.part = rank;
-  numbers.n_parts = static_cast<Index>(n);
-  numbers.first_row = vertex_book.first_row;
-  numbers.end_row = vertex_book.end_row;
-  numbers.n_vertices = vertices.n;
-  numbers.n_components = vertex_book.n_components;
+template <class Mesh>
+PartData<Mesh> assemble(Packed packed) {
+  const std::vector<Bundle>& bundles = packed.bundles;
+  PartNumbers& numbers = packed.numbers;
   PartData<Mesh> data;
-  together([&] {
-    data =
-        assemble(bundles, std::move(numbers), std::move(own_interfaces), piece, std::move(patches));
-  });
+  const std::vector<Place> elements = places_of(bundles, &Bundle::elements);
+  numbers.elements = numbers_of(elements);
+  numbers.interfaces = numbers_of(places_of(bundles, &Bundle::interfaces));
+  for (const Place& place : elements) numbers.own_elements.push_back(place.bundle == 0);
+  std::sort(packed.own_interfaces.begin(), packed.own_interfaces.end());
+  for (const Index i : numbers.interfaces)
+    numbers.own_interfaces.push_back(find(packed.own_interfaces, i) >= 0);
+  const std::vector<Place> vertices = places_of(bundles, &Bundle::vertices);
+  numbers.vertices = numbers_of(vertices);
+  Points points(static_cast<Eigen::Index>(vertices.size()), 3);
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const Bundle& bundle = bundles[vertices[k].bundle];
+    const std::size_t row = vertices[k].row;
+    numbers.vertex_rows.push_back(bundle.rows[row]);
+    numbers.vertex_components.push_back(bundle.components[row]);
+    for (std::size_t x = 0; x < 3; ++x)
+      points(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(x)) =
+          bundle.places[3 * row + x];
+  }
+  data.fields.vertex = collect(bundles, &Bundle::vertex_values, vertices, packed.vertex_fields);
+  element_fields(data.fields, data.part.mesh) =
+      collect(bundles, &Bundle::element_values, elements, packed.element_fields);
+  data.part.mesh =
+      make_mesh(bundles, elements, numbers, std::move(points), packed.patches, data.part.mesh);
+  data.part.numbers = std::move(numbers);
+  data.patches = std::move(packed.patches);
+  return data;
+}
+
+template <class Mesh>
+PartData<Mesh> join(MeshPiece<Mesh> piece) {
+  Packed packed = pack(std::move(piece));
+  PartData<Mesh> data;
+  together([&] { data = assemble<Mesh>(std::move(packed)); });
   return data;
 }
 

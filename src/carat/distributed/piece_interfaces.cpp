@@ -263,12 +263,9 @@ InterfaceBook keep_interfaces(const PolygonMesh& mesh, const Numbering& vertices
   std::int64_t next = sum_before(n_here, total);
   check_count(total, "edges");
   Lists<EdgeAnswer> answers(n);
-  // The other processes of an edge, for each of its entries, in the order of the answers.
-  Lists<std::vector<int>> others(n);
-  for (std::size_t p = 0; p < n; ++p) {
-    answers[p].resize(uses_here[p].size());
-    others[p].resize(uses_here[p].size());
-  }
+  // The other processes of an edge that several share, by its place in the answers.
+  Lists<std::pair<std::size_t, int>> others(n);
+  for (std::size_t p = 0; p < n; ++p) answers[p].resize(uses_here[p].size());
   std::vector<std::pair<Index, Index>> element_parts;
   std::vector<Index> parts;
   for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
@@ -286,16 +283,17 @@ InterfaceBook keep_interfaces(const PolygonMesh& mesh, const Numbering& vertices
     for (std::size_t k = begin; k < end; ++k) {
       const auto p = static_cast<std::size_t>(entries[k].process);
       for (std::size_t other = begin; other < end; ++other)
-        if (other != k) others[p][entries[k].place].push_back(entries[other].process);
+        if (other != k) others[p].emplace_back(entries[k].place, entries[other].process);
       answers[p][entries[k].place] = {static_cast<Index>(next), part,
                                       static_cast<Index>(end - begin - 1)};
     }
     ++next;
   }
   Lists<int> flat(n);
-  for (std::size_t p = 0; p < n; ++p)
-    for (const std::vector<int>& list : others[p])
-      flat[p].insert(flat[p].end(), list.begin(), list.end());
+  for (std::size_t p = 0; p < n; ++p) {
+    std::sort(others[p].begin(), others[p].end());
+    for (const auto& [place, process] : others[p]) flat[p].push_back(process);
+  }
   const Lists<EdgeAnswer> got = exchange(answers);
   const Lists<int> others_got = exchange(flat);
 
@@ -358,6 +356,8 @@ InterfaceBook keep_interfaces(const PolyhedralMesh& mesh, const Numbering& verti
   }
   const Lists<FaceUse> uses_here = exchange(uses);
   const Lists<Index> corners_here = exchange(corners);
+  uses.clear();
+  corners.clear();
   Lists<FaceAnswer> answers(n);
   Lists<std::span<const Index>> named(n);
   for (std::size_t p = 0; p < n; ++p) {
