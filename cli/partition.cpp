@@ -131,6 +131,15 @@ class PartWriter {
   std::vector<FieldShape> vertex_fields_, element_fields_;
 };
 
+void note_lost_patches(Session&, const Options&, const SurfaceData&) {}
+void note_lost_patches(Session& session, const Options& options, const VolumeData& data) {
+  std::string names;
+  for (const BoundaryPatch& patch : data.patches) names += (names.empty() ? "" : ", ") + patch.name;
+  if (!names.empty())
+    session.note("dropped the boundary patches " + names + ": the files in " + options.output +
+                 " are of a format without patches; a file .cparts keeps them");
+}
+
 template <class Data>
 void divide_mesh(Session& session, const Options& options, const Data& data) {
   const auto& mesh = data.mesh;
@@ -168,6 +177,7 @@ void divide_mesh(Session& session, const Options& options, const Data& data) {
     report["parts"].push_back(std::move(entry));
   }
   if (options.output.empty()) return;
+  if (writer) note_lost_patches(session, options, data);
   report["output"] = session.phase("write", [&] {
     if (writer) return writer->write_index();
     write_part_file(options.output, data, division);

@@ -45,6 +45,16 @@ class Partition(CaratTest):
         self.assertEqual(sorted(self.files()), sorted([mesh, "mesh.cparts"]))
         self.fail_with(3, "partition", mesh, "-n", 3, "-o", "no/mesh.cparts", says="no")
 
+    def test_patches_are_kept_by_one_file_alone(self):
+        # A tetrahedron with a patch.
+        faces = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
+        self.write_ovm("tet.ovm", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [faces],
+                       {"floor": [faces[0]]})
+        notes = self.report("partition", "tet.ovm", "-n", 1, "-o", "parts")["notes"]
+        self.assertEqual(notes, ["dropped the boundary patches floor: the files in parts are of a "
+                                 "format without patches; a file .cparts keeps them"])
+        self.assertNotIn("notes", self.report("partition", "tet.ovm", "-n", 1, "-o", "a.cparts"))
+
     def test_surfaces(self):
         self.check(self.generate("sphere-hexagons", 2), "face", ".vtp", 3)
 
