@@ -6,8 +6,8 @@
 //   carat_bench_poisson [--benchmark_filter=REGEX] [--benchmark_...]
 //
 // Names are OPERATOR/SOLVER/MESH/VERTICES/threads:N. The solver auto takes products where
-// poisson_form() does, the solver assembled always has the matrix. CARAT_BENCH_LARGEST leaves out
-// larger meshes.
+// poisson_form() does, the solver assembled always has the matrix, the solver triangle keeps little
+// more than one triangle of it. CARAT_BENCH_LARGEST leaves out larger meshes.
 
 #include "carat/apps/poisson.h"
 
@@ -71,9 +71,11 @@ Outcome solve(const Case& wanted, const Mesh& whole) {
   DiscretizationOptions options;
   options.parts = DiscretizationParts::Matrices;
   options.threads = wanted.threads;
-  const bool assembled = wanted.solver == "assembled";
+  const bool triangle = wanted.solver == "triangle";
+  const bool assembled = triangle || wanted.solver == "assembled";
   const SolverOptions solver{.kind = assembled ? SolverKind::Auto : solver_kind(wanted.solver),
-                             .threads = wanted.threads};
+                             .threads = wanted.threads,
+                             .storage = triangle ? MatrixStorage::Triangle : MatrixStorage::Full};
   if (!assembled) options.form = poisson_form(mesh, wanted.op, solver);
   Discretization d = discretize(mesh, wanted.op, options);
   outcome.assembly = now() - start;
@@ -193,7 +195,8 @@ int main(int argc, char** argv) {
     for (const carat::Index size : sizes) {
       for (const char* const op : {"diamond", "stabilized_diamond", "bunge"})
         for (const int threads : {1, 2}) add({op, "auto", mesh, size, threads});
-      for (const int threads : {1, 2}) add({"diamond", "assembled", mesh, size, threads});
+      for (const char* const solver : {"assembled", "triangle"})
+        for (const int threads : {1, 2}) add({"diamond", solver, mesh, size, threads});
       if (size <= largest_factor) add({"diamond", "cholesky", mesh, size, 1});
     }
   };

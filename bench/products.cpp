@@ -1,5 +1,5 @@
-// Products with the diamond's stiffness: the matrix beside the factors, 1 and 8 vectors, on meshes
-// of all kinds, in one run.
+// Products with the diamond's stiffness: the matrix beside its triangle and the factors, 1 and 8
+// vectors, on meshes of all kinds, in one run.
 //
 //   carat_bench_products [--benchmark_filter=hexagons] [--benchmark_...]
 //
@@ -15,6 +15,7 @@
 
 #include "carat/operators/registry.h"
 #include "carat/solve/matrix_operator.h"
+#include "carat/solve/symmetric_matrix.h"
 #include "grids.h"
 #include "measure.h"
 #include "volume_grids.h"
@@ -39,6 +40,7 @@ std::shared_ptr<const SymmetricOperator> make(const std::string& form, const std
                          ? discretize(grid(kind, surface_size()), "diamond", options)
                          : discretize(volume_grid(kind, surface_size() / 9), "diamond", options);
   if (d.stiffness_product) return d.stiffness_product;
+  if (form == "triangle") return std::make_shared<SymmetricMatrix>(std::move(d.stiffness), threads);
   return std::make_shared<MatrixOperator>(std::make_shared<SparseMatrix>(std::move(d.stiffness)),
                                           threads);
 }
@@ -58,20 +60,22 @@ void multiply(benchmark::State& state, const std::string& form, const std::strin
 }
 
 void print_ratios(const BestTimes& times) {
-  std::printf("\n%-10s %8s %8s | %12s %12s %8s\n", "mesh", "vectors", "threads", "matrix ms",
-              "product ms", "ratio");
+  std::printf("\n%-10s %8s %8s | %12s %12s %12s\n", "mesh", "vectors", "threads", "matrix ms",
+              "triangle ms", "product ms");
   for (const char* const kind : kMeshes)
     for (const int k : {1, 8})
       for (const int threads : {1, 2}) {
-        const auto time = [&](const char* form) {
+        std::printf("%-10s %8d %8d |", kind, k, threads);
+        for (const char* const form : {"matrix", "triangle", "product"}) {
           const auto found =
               times.best.find(std::string(form) + "/" + kind + "/" + std::to_string(k) +
                               "/threads:" + std::to_string(threads) + "/");
-          return found == times.best.end() ? 0.0 : 1e3 * found->second;
-        };
-        if (time("matrix") > 0 && time("product") > 0)
-          std::printf("%-10s %8d %8d | %12.2f %12.2f %8.2f\n", kind, k, threads, time("matrix"),
-                      time("product"), time("matrix") / time("product"));
+          if (found == times.best.end())
+            std::printf(" %12s", "-");
+          else
+            std::printf(" %12.2f", 1e3 * found->second);
+        }
+        std::printf("\n");
       }
 }
 
@@ -85,7 +89,7 @@ int main(int argc, char** argv) {
   for (const std::string kind : kMeshes)
     for (const int k : {1, 8})
       for (const int threads : {1, 2})
-        for (const std::string form : {"matrix", "product"})
+        for (const std::string form : {"matrix", "triangle", "product"})
           benchmark::RegisterBenchmark(
               (form + "/" + kind + "/" + std::to_string(k) + "/threads:" + std::to_string(threads))
                   .c_str(),

@@ -85,6 +85,7 @@ Json to_json(const SolverInfo& info, const SolveReport& how) {
           {"ordering", info.ordering},
           {"factor_nnz", info.nonzeros},
           {"assembled", info.assembled},
+          {"halved", info.halved},
           {"operator_bytes", info.operator_bytes},
           {"iterations", how.iterations},
           {"residual", how.residual}};
@@ -106,13 +107,18 @@ void solve(Session& session, const PoissonArguments& options, const PoissonExpre
   if (given.coefficient) coefficient.function = *given.coefficient;
   if (!options.coefficient_field.empty())
     coefficient.of_cells = cell_coefficient(data.mesh, data.fields, options.coefficient_field);
-  const SolverOptions solver{.kind = solver_kind(options.solver), .threads = session.threads()};
-  const Discretization discretization = discretize(
+  const SolverOptions solver{.kind = solver_kind(options.solver),
+                             .threads = session.threads(),
+                             .storage = matrix_storage(options.storage)};
+  Discretization discretization = discretize(
       session, data.mesh, options.discretization,
       writes ? DiscretizationParts::Frames : DiscretizationParts::Matrices, coefficient, &solver);
   const Vector f = at_unknowns(given.rhs, data.mesh.points(), discretization);
-  const Poisson poisson = session.phase(
-      "factor", [&] { return Poisson(data.mesh, discretization, conditions, solver); });
+  // The comparison needs the matrices once more; nothing else does.
+  const Poisson poisson = session.phase("factor", [&] {
+    return given.exact ? Poisson(data.mesh, discretization, conditions, solver)
+                       : Poisson(data.mesh, std::move(discretization), conditions, solver);
+  });
   const PoissonSolution solution = session.phase("solve", [&] { return poisson.solve(f); });
 
   report_conditions(session, placed, words(data.mesh).side);
@@ -192,6 +198,11 @@ std::function<void(Session&)> declare(CLI::App& app) {
                  "matrix of a diamond on polygons and polyhedra. Others:\n"
                  "cholesky, multigrid, incomplete-cholesky,\n"
                  "sparser-cholesky")
+      ->type_name("NAME");
+  app.add_option("--matrix-storage", options->storage,
+                 "full, or triangle: little more than one triangle of the\n"
+                 "matrices, for less memory; no change where the solver\n"
+                 "needs no matrix")
       ->type_name("NAME");
   declare_engine_option(app);
   declare_operator_options(app, options->discretization, Application::Poisson);

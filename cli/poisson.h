@@ -15,7 +15,7 @@
 namespace carat::cli {
 
 struct PoissonArguments {
-  std::string input, output, solver = "auto";
+  std::string input, output, solver = "auto", storage = "full";
   std::string rhs, coefficient_field;
   std::vector<std::string> dirichlet, neumann, robin;
   std::optional<std::string> dirichlet_where, coefficient, exact;

@@ -93,6 +93,8 @@ void PartEngine::poisson(Session& session, const PoissonArguments& arguments) co
       throw InvalidOption("--solver " + arguments.solver +
                           " is of the embedded engine; choose PETSc's by its options, e.g. "
                           "-pc_type");
+    if (arguments.storage != "full")
+      throw InvalidOption("--matrix-storage " + arguments.storage + " is of the embedded engine");
     check_part_output(arguments.output);
   });
   PartInput input = read_part_input(session, arguments.input, arguments.output);

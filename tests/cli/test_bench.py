@@ -90,6 +90,21 @@ class Profile(CaratTest):
         self.assertEqual(moved["solve"], solver["iterations"] *
                          (solver["operator_bytes"] + 16 * solver["factor_nnz"]))
 
+    def test_one_triangle_of_the_matrices_gives_the_same_solution(self):
+        self.generate("plane-triangles", 4)
+        arguments = ["poisson", "mesh.ply", "--rhs", "sin(3*x)", "--dirichlet", "x*y",
+                     "--operator", "diamond", "--solver", "multigrid", "--matrix-storage"]
+        full = self.report(*arguments, "full")
+        for extra in [], ["--exact", "x"]:
+            half = self.report(*arguments, "triangle", *extra)
+            self.assertEqual((full["solver"]["halved"], half["solver"]["halved"]), (False, True))
+            self.assertIn("with one triangle", half["solver"]["method"])
+            self.assertLess(half["solver"]["operator_bytes"],
+                            0.65 * full["solver"]["operator_bytes"])
+            for bound in "min", "max":
+                self.assertAlmostEqual(half["u"][bound], full["u"][bound], delta=1e-9)
+        self.fail_with(2, *arguments, "half", says=["'half'", "full, triangle"])
+
     def test_eigenpairs_and_distances_have_bytes_in_all_phases(self):
         self.generate("plane-quads", 3)
         self.generate("cube-hexahedra", 3, name="cube.vtu")

@@ -328,6 +328,8 @@ class EngineFull(EngineTest):
                 (2, "no boundary edge is left", ["poisson", mesh, "--rhs", "1", "--dirichlet", "0",
                                                  "--robin", "1"]),
                 (2, "--solver", ["poisson", mesh, "--rhs", "1", "--solver", "cholesky"]),
+                (2, "--matrix-storage", ["poisson", mesh, "--rhs", "1",
+                                         "--matrix-storage", "triangle"]),
                 (2, "carry no fields", ["poisson", mesh, "--rhs", "1", "-o", "u.obj"]),
                 (3, "does not exist; create it first", ["poisson", mesh, "--rhs", "1", "-o",
                                                         "no/u.pvtu"]),

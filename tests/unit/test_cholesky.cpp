@@ -81,5 +81,15 @@ TEST(MatrixComponents, explicit_zeros_do_not_connect) {
   EXPECT_EQ(matrix_components(a), (std::vector<Index>{0, 1, -1}));
 }
 
+TEST(MatrixComponents, rows_are_joined_by_entries_below_the_diagonal) {
+  SparseMatrix a(7, 7);  // 0-4-2, 1-6, 3, and 5 empty; joined last to first
+  a.insert(2, 2) = 1;
+  a.insert(3, 3) = 1;
+  a.insert(4, 2) = -1;
+  a.insert(4, 0) = -1;
+  a.insert(6, 1) = -1;
+  EXPECT_EQ(matrix_components(a), (std::vector<Index>{0, 1, 0, 2, 0, -1, 1}));
+}
+
 }  // namespace
 }  // namespace carat::test

@@ -10,6 +10,7 @@
 #include "carat/base/error.h"
 #include "carat/operators/registry.h"
 #include "carat/solve/matrix_operator.h"
+#include "carat/solve/symmetric_matrix.h"
 
 namespace carat {
 namespace {
@@ -54,10 +55,14 @@ Vector padded(const Vector& load, Index n) {
 /// \param matrix  copied or moved, as it comes
 template <class Matrix>
 std::shared_ptr<const SymmetricOperator> as_operator(
-    const std::shared_ptr<const SymmetricOperator>& product, Matrix&& matrix, int threads) {
+    const std::shared_ptr<const SymmetricOperator>& product, Matrix&& matrix,
+    const SolverOptions& solver) {
   if (product) return product;
-  return std::make_shared<MatrixOperator>(
-      std::make_shared<SparseMatrix>(std::forward<Matrix>(matrix)), threads);
+  SparseMatrix own(std::forward<Matrix>(matrix));
+  if (solver.storage == MatrixStorage::Triangle)
+    return std::make_shared<SymmetricMatrix>(std::move(own), solver.threads);
+  return std::make_shared<MatrixOperator>(std::make_shared<SparseMatrix>(std::move(own)),
+                                          solver.threads);
 }
 
 /// \param many  elements have so many vertices that products beat the matrix
@@ -91,14 +96,19 @@ OperatorForm poisson_form(const PolyhedralMesh& mesh, const std::string& operato
               mesh.n_vertices(), solver, 3);
 }
 
-Poisson::Operators Poisson::operators(const Discretization& d, int threads) {
-  return {as_operator(d.stiffness_product, d.stiffness, threads),
-          as_operator(d.mass_product, d.mass, threads)};
+Poisson::Operators Poisson::operators(const Discretization& d, const SolverOptions& solver) {
+  return {as_operator(d.stiffness_product, d.stiffness, solver),
+          as_operator(d.mass_product, d.mass, solver)};
 }
 
-Poisson::Operators Poisson::operators(Discretization&& d, int threads) {
-  return {as_operator(d.stiffness_product, std::move(d.stiffness), threads),
-          as_operator(d.mass_product, std::move(d.mass), threads)};
+Poisson::Operators Poisson::operators(Discretization&& d, const SolverOptions& solver) {
+  const Eigen::Index n = d.stiffness.rows();
+  Operators result{as_operator(d.stiffness_product, std::move(d.stiffness), solver),
+                   as_operator(d.mass_product, std::move(d.mass), solver)};
+  // The rest of the discretization still knows how many unknowns it has.
+  d.stiffness.resize(n, n);
+  d.mass.resize(n, n);
+  return result;
 }
 
 Poisson::Operators Poisson::operators(const std::shared_ptr<const Discretization>& d, int threads) {
@@ -114,26 +124,26 @@ Poisson::Operators Poisson::operators(const std::shared_ptr<const Discretization
 Poisson::Poisson(const PolygonMesh& mesh, const Discretization& discretization,
                  const BoundaryConditions& conditions, const SolverOptions& solver)
     : Poisson(integrate_boundary(mesh, conditions), discretization,
-              operators(discretization, solver.threads), conditions,
+              operators(discretization, solver), conditions,
               settled(solver, 2, sparser_stiffness(mesh, discretization))) {}
 
 Poisson::Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
                  const BoundaryConditions& conditions, const SolverOptions& solver)
     : Poisson(integrate_boundary(mesh, conditions), discretization,
-              operators(discretization, solver.threads), conditions,
+              operators(discretization, solver), conditions,
               settled(solver, 3, sparser_stiffness(mesh, discretization))) {}
 
 // What is moved out of is read for its name, options and unknowns beyond the vertices alone.
 Poisson::Poisson(const PolygonMesh& mesh, Discretization&& discretization,
                  const BoundaryConditions& conditions, const SolverOptions& solver)
     : Poisson(integrate_boundary(mesh, conditions), discretization,
-              operators(std::move(discretization), solver.threads), conditions,
+              operators(std::move(discretization), solver), conditions,
               settled(solver, 2, sparser_stiffness(mesh, discretization))) {}
 
 Poisson::Poisson(const PolyhedralMesh& mesh, Discretization&& discretization,
                  const BoundaryConditions& conditions, const SolverOptions& solver)
     : Poisson(integrate_boundary(mesh, conditions), discretization,
-              operators(std::move(discretization), solver.threads), conditions,
+              operators(std::move(discretization), solver), conditions,
               settled(solver, 3, sparser_stiffness(mesh, discretization))) {}
 
 Poisson::Poisson(const PolygonMesh& mesh,

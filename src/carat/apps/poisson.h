@@ -41,19 +41,21 @@ OperatorForm poisson_form(const PolyhedralMesh& mesh, const std::string& operato
 /// Small systems are factorised, large ones solved by conjugate gradients preconditioned through
 /// sparser_stiffness(): see SolverOptions. These need no matrix of the operator itself; see
 /// poisson_form() and DiscretizationOptions::form. With unknowns beyond the vertices: always
-/// factorised.
+/// factorised. Matrices that are copied or moved can be kept by one triangle
+/// (SolverOptions::storage); where there is none, that changes nothing.
 class Poisson {
  public:
   /// \throws InvalidOption  vertex or side out of range, a side that is not on the boundary, a
   ///                        value that is not finite, alpha < 0, lists of different length,
   ///                        a vertex with two different Dirichlet values
-  /// \param solver  kind, right_hand_sides and threads are read; the rest follows from the mesh
+  /// \param solver  kind, right_hand_sides, threads and storage are read; the rest follows from
+  ///                the mesh
   /// \throws SolverFailure  the system is not positive definite, or singular beyond constants
   Poisson(const PolygonMesh& mesh, const Discretization& discretization,
           const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
   Poisson(const PolyhedralMesh& mesh, const Discretization& discretization,
           const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
-  /// The same from matrices that are moved, not copied.
+  /// The same from matrices that are moved, not copied; empty ones of the same size stay behind.
   Poisson(const PolygonMesh& mesh, Discretization&& discretization,
           const BoundaryConditions& conditions = {}, const SolverOptions& solver = {});
   Poisson(const PolyhedralMesh& mesh, Discretization&& discretization,
@@ -85,8 +87,8 @@ class Poisson {
   struct Operators {
     std::shared_ptr<const SymmetricOperator> stiffness, mass;
   };
-  static Operators operators(const Discretization& discretization, int threads);
-  static Operators operators(Discretization&& discretization, int threads);
+  static Operators operators(const Discretization& discretization, const SolverOptions& solver);
+  static Operators operators(Discretization&& discretization, const SolverOptions& solver);
   static Operators operators(const std::shared_ptr<const Discretization>& discretization,
                              int threads);
   Poisson(BoundaryIntegrals boundary, const Discretization& discretization, Operators operators,

@@ -35,8 +35,15 @@ class SymmetricOperator {
   virtual std::shared_ptr<const SymmetricOperator> plus(const SparseMatrix& other) const = 0;
   /// Whether the matrix is stored.
   virtual bool assembled() const = 0;
+  /// Whether little more than one triangle of it is.
+  virtual bool halved() const { return false; }
+  /// Entries of the matrix.
+  virtual std::int64_t nonzeros() const { return matrix()->nonZeros(); }
   /// The matrix; made now where it is not stored, which takes longer than to assemble it.
   virtual std::shared_ptr<const SparseMatrix> matrix() const = 0;
+  /// A matrix with the lower triangle and the diagonal of this one; entries above may be missing.
+  /// Made as matrix() where neither is stored.
+  virtual std::shared_ptr<const SparseMatrix> lower_triangle() const { return matrix(); }
   virtual std::size_t bytes() const = 0;  ///< that a product reads
 };
 

@@ -244,28 +244,24 @@ const FactorInfo& Cholesky::info() const { return impl_->info; }
 
 std::vector<Index> matrix_components(const SparseMatrix& matrix) {
   const Index n = static_cast<Index>(matrix.rows());
-  std::vector<Index> component(static_cast<std::size_t>(n), -1);
-  std::vector<Index> stack;
-  Index next = 0;
-  for (Index seed = 0; seed < n; ++seed) {
-    if (component[seed] >= 0) continue;
-    bool empty = true;
-    for (SparseMatrix::InnerIterator entry(matrix, seed); entry && empty; ++entry)
-      empty = entry.value() == 0;
-    if (empty) continue;
-    component[seed] = next;
-    stack.push_back(seed);
-    while (!stack.empty()) {
-      const Index row = stack.back();
-      stack.pop_back();
-      for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
-        if (entry.value() != 0 && component[entry.col()] < 0) {
-          component[entry.col()] = next;
-          stack.push_back(static_cast<Index>(entry.col()));
-        }
+  // Trees of rows whose roots are their first rows; -1: no entry yet.
+  std::vector<Index> parent(static_cast<std::size_t>(n), -1);
+  const auto root = [&](Index row) {
+    if (parent[row] < 0) parent[row] = row;
+    while (parent[row] != row) row = parent[row] = parent[parent[row]];
+    return row;
+  };
+  for (Index row = 0; row < n; ++row)
+    for (SparseMatrix::InnerIterator entry(matrix, row); entry && entry.col() <= row; ++entry) {
+      if (entry.value() == 0) continue;
+      const auto [first, last] = std::minmax({root(row), root(static_cast<Index>(entry.col()))});
+      parent[last] = first;
     }
-    ++next;
-  }
+  // Roots come before their rows.
+  std::vector<Index> component(static_cast<std::size_t>(n), -1);
+  Index next = 0;
+  for (Index row = 0; row < n; ++row)
+    if (parent[row] >= 0) component[row] = parent[row] == row ? next++ : component[parent[row]];
   return component;
 }
 

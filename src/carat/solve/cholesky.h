@@ -24,7 +24,7 @@ struct FactorInfo {
 /// dealt with.
 class Cholesky {
  public:
-  /// \param matrix  symmetric; entries above and below the diagonal must agree
+  /// \param matrix  symmetric; its upper triangle is not read
   /// \param fixed   empty, or one flag a row: rows and columns to leave out
   /// \param dimension  of the mesh, which tells the better ordering: 2 or 3; 0: several are tried
   /// \throws SolverFailure  not positive definite: names the row of the failing pivot
@@ -52,8 +52,8 @@ class Cholesky {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Connected components of a matrix by its non-zero off-diagonal values, numbered by first row;
-/// -1 for rows without a non-zero entry.
+/// Connected components of a symmetric matrix by its non-zero off-diagonal values, of which those
+/// in the lower triangle are read, numbered by first row; -1 for rows without a non-zero entry.
 /// Cost: O(nnz).
 std::vector<Index> matrix_components(const SparseMatrix& matrix);
 

@@ -18,7 +18,8 @@ namespace carat {
 /// precision: that halves the memory that a cycle moves, and errs far less than a cycle does.
 class Multigrid final : public Preconditioner {
  public:
-  /// \param matrix,fixed  as for Cholesky
+  /// \param matrix   symmetric, with both triangles
+  /// \param fixed    as for Cholesky
   /// \param threads       of the set-up; 0: all the machine has. The result does not depend on it.
   /// \throws SolverFailure  a diagonal entry is not positive, or a coarse matrix not definite
   Multigrid(const SparseMatrix& matrix, const std::vector<bool>& fixed, int threads = 0);

@@ -104,6 +104,12 @@ SolverKind solver_kind(const std::string& name) {
   throw InvalidOption("solver '" + name + "' is not known; known are: " + known);
 }
 
+MatrixStorage matrix_storage(const std::string& name) {
+  if (name == "full") return MatrixStorage::Full;
+  if (name == "triangle") return MatrixStorage::Triangle;
+  throw InvalidOption("matrix storage '" + name + "' is not known; known are: full, triangle");
+}
+
 double factor_bytes(Index n_unknowns, double nonzeros, int dimension) {
   // Nested dissection fills O(n log n) on surfaces and O(n^(4/3)) in volumes.
   const double n = std::max(2.0, static_cast<double>(n_unknowns));
@@ -150,8 +156,7 @@ struct SpdSolver::Impl {
       info.reason = size + " and few right-hand sides: no matrix and no factor of it";
       return;
     }
-    const double bytes =
-        factor_bytes(n, static_cast<double>(a->matrix()->nonZeros()), options.dimension);
+    const double bytes = factor_bytes(n, static_cast<double>(a->nonzeros()), options.dimension);
     const double free = static_cast<double>(available_memory());
     if (free > 0 && bytes >= kMemoryShare * free) {
       info.kind = SolverKind::Multigrid;
@@ -167,7 +172,7 @@ struct SpdSolver::Impl {
   }
 
   void factorise() const {
-    direct = std::make_unique<Cholesky>(*a->matrix(), fixed, options.dimension);
+    direct = std::make_unique<Cholesky>(*a->lower_triangle(), fixed, options.dimension);
   }
 
   void prepare() {
@@ -183,6 +188,7 @@ struct SpdSolver::Impl {
       info.nonzeros = direct->info().nonzeros;
     }
     info.assembled = a->assembled() || info.kind == SolverKind::Cholesky;
+    info.halved = a->halved();
     info.operator_bytes = a->bytes();
     info.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
@@ -190,7 +196,8 @@ struct SpdSolver::Impl {
   void prepare_iteration() {
     from_sparser = build_from_sparser();
     if (!from_sparser) try {
-        const std::shared_ptr<const SparseMatrix> matrix = a->matrix();
+        const std::shared_ptr<const SparseMatrix> matrix =
+            info.kind == SolverKind::Multigrid ? a->matrix() : a->lower_triangle();
         preconditioner = make_preconditioner(info.kind, *matrix, fixed, options.threads);
         if (!a->assembled()) a = std::make_shared<MatrixOperator>(matrix, options.threads);
       } catch (const SolverFailure& failure) {
@@ -200,8 +207,8 @@ struct SpdSolver::Impl {
         info.reason = "no multigrid: " + std::string(failure.what());
         return;
       }
-    info.method = std::string(a->assembled() ? "" : "matrix-free ") + "conjugate gradients, " +
-                  preconditioner_name(info.kind);
+    info.method = std::string(a->assembled() ? "" : "matrix-free ") + "conjugate gradients" +
+                  (a->halved() ? " with one triangle, " : ", ") + preconditioner_name(info.kind);
     if (from_sparser && info.kind != SolverKind::SparserCholesky)
       info.method += " of the sparser matrix";
     info.nonzeros = preconditioner->nonzeros();

@@ -27,6 +27,16 @@ const char* solver_kind_name(SolverKind kind);
 /// \throws InvalidOption  unknown name; the message lists the known ones
 SolverKind solver_kind(const std::string& name);
 
+/// How a matrix is kept.
+enum class MatrixStorage {
+  Full,
+  Triangle,  ///< little more than one triangle: half of the memory (SymmetricMatrix)
+};
+
+/// "full", "triangle".
+/// \throws InvalidOption  unknown name; the message lists the known ones
+MatrixStorage matrix_storage(const std::string& name);
+
 struct SolverOptions {
   SolverKind kind = SolverKind::Auto;
   Index right_hand_sides = 1;  ///< how many are expected: many pay for a factorisation
@@ -35,6 +45,8 @@ struct SolverOptions {
   /// built. Empty: they are built from the matrix itself.
   std::function<SparseMatrix()> sparser{};
   int threads = 0;  ///< of products and vectors; 0: all the machine has
+  /// Of matrices that Poisson makes its own; shared ones stay as they are.
+  MatrixStorage storage = MatrixStorage::Full;
 };
 
 /// Whether the solver of so many unknowns is an iteration, lack of memory for a factor and failures
@@ -54,6 +66,7 @@ struct SolverInfo {
   std::int64_t nonzeros = 0;       ///< in the factor or preconditioner
   std::size_t operator_bytes = 0;  ///< of the matrix, or of what multiplies without it
   bool assembled = true;           ///< the matrix was, or had to be
+  bool halved = false;             ///< of the matrix little more than a triangle is kept
   double seconds = 0;              ///< to set it up
 };
 
