@@ -4,7 +4,7 @@
 //   mpirun -np 4 poisson parts/mesh.pvtu
 //
 // Sample run: ball-voronoi of level 2 on 4 processes
-//   SAMPLE
+//   14108 vertices in 4 parts, u is at most 0.357939
 #include <carat/distributed/poisson.h>
 #include <carat/distributed/processes.h>
 #include <carat/distributed/read_parts.h>
