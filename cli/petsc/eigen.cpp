@@ -38,9 +38,11 @@ void find_modes(Session& session, const EigenArguments& arguments, PartInput& in
   const std::vector<Index> fixed = dirichlet_vertices(part, arguments);
   const Discretization discretization =
       discretize(session, part, arguments.discretization, DiscretizationParts::Matrices);
-  const EigenPairs pairs = session.phase("solve", [&] {
-    return distributed_eigenmodes(part, discretization, arguments.count, fixed,
-                                  arguments.checkpoint);
+  const EigenPairs pairs = session.phase("solve", [&](ProgressLine& line) {
+    return distributed_eigenmodes(
+        part, discretization, arguments.count, fixed, arguments.checkpoint, [&](Index found) {
+          line.show("solve: " + std::to_string(found) + " of " + count(arguments.count, "pair"));
+        });
   });
   report_pairs(session, arguments, pairs,
                {{"kind", "slepc"},

@@ -107,25 +107,21 @@ std::vector<Field> gather_fields(const std::vector<Field>& fields, const Gather&
   return gathered;
 }
 
-/// Sizes of parts, and what they send.
-template <class Mesh>
-void report_share(Session& session, const MeshPart<Mesh>& part, const Discretization& d) {
-  const PartNumbers& numbers = part.numbers;
-  const PartShare share = share_of(d.stiffness, numbers);
+Json largest_and_sum(std::int64_t value) {
+  return {{"largest", static_cast<std::int64_t>(largest_of_all(static_cast<double>(value)))},
+          {"sum", sum_of_all(value)}};
+}
+
+void report_sizes(Session& session, const PartNumbers& numbers) {
   const auto n_elements = static_cast<std::int64_t>(numbers.elements.size());
   const std::int64_t own =
       std::count(numbers.own_elements.begin(), numbers.own_elements.end(), true);
-  const auto others =
+  const std::int64_t others =
       static_cast<std::int64_t>(numbers.vertices.size()) - (numbers.end_row - numbers.first_row);
-  const auto describe = [](std::int64_t value) -> Json {
-    return {{"largest", static_cast<std::int64_t>(largest_of_all(static_cast<double>(value)))},
-            {"sum", sum_of_all(value)}};
-  };
-  session.report()["parts"] = {{"own_elements", describe(own)},
-                               {"halo_elements", describe(n_elements - own)},
-                               {"vertices_of_others", describe(others)},
-                               {"stiffness_entries", describe(share.entries)},
-                               {"stiffness_bytes_sent", describe(share.bytes_sent())}};
+  Json& report = session.report()["parts"];
+  report["own_elements"] = largest_and_sum(own);
+  report["halo_elements"] = largest_and_sum(n_elements - own);
+  report["vertices_of_others"] = largest_and_sum(others);
 }
 
 }  // namespace
@@ -200,15 +196,22 @@ Discretization discretize(Session& session, const MeshPart<Mesh>& part,
                 ", " +
                 (n_processes() == 1 ? "1 process" : std::to_string(n_processes()) + " processes"));
     session.add_diagnostics(whole_diagnostics(part, discretization, strict));
-    report_share(session, part, discretization);
+    report_sizes(session, part.numbers);
+    if (need == MatrixNeed::Entries)
+      report_share(session, share_of(discretization.stiffness, part.numbers));
     return discretization;
   });
 }
 
+void report_share(Session& session, const PartShare& share) {
+  Json& report = session.report()["parts"];
+  report["matrix_entries"] = largest_and_sum(share.entries);
+  report["matrix_bytes_sent"] = largest_and_sum(share.bytes_sent());
+}
+
 void report_memory(Session& session) {
-  const auto own = static_cast<double>(peak_memory());
-  session.report()["peak_memory_of_processes"] = {{"largest", largest_of_all(own)},
-                                                  {"sum", sum_of_all(own)}};
+  session.report()["parts"]["peak_memory"] =
+      largest_and_sum(static_cast<std::int64_t>(peak_memory()));
 }
 
 template <class Mesh>

@@ -7,7 +7,7 @@
 
 #include "carat/distributed/part_data.h"
 #include "carat/distributed/processes.h"
-#include "carat/operators/discretization.h"
+#include "carat/operators/part_discretization.h"
 #include "cli/boundary_data.h"
 #include "cli/files.h"
 #include "cli/operator_options.h"
@@ -36,13 +36,16 @@ PartInput read_part_input(Session& session, const std::string& path, const std::
 /// What is done with matrices: products take their place where they are faster.
 enum class MatrixNeed { Entries, Multiplied };
 
-/// What the part brings to the operators. Reports the options, what all found, and how much of the
-/// stiffness crosses from process to process.
+/// What the part brings to the operators. Reports the options, what all found, the sizes of parts,
+/// and, of entries, how much of the stiffness crosses from process to process.
 template <class Mesh>
 Discretization discretize(Session& session, const MeshPart<Mesh>& part,
                           const OperatorOptions& options, DiscretizationParts parts,
                           const Coefficient& coefficient = {},
                           MatrixNeed need = MatrixNeed::Entries);
+
+/// Reports what all parts bring to matrices, and send of it.
+void report_share(Session& session, const PartShare& share);
 
 /// Reports the peak memory of all processes: the largest, and the sum.
 void report_memory(Session& session);

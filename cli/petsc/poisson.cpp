@@ -56,6 +56,7 @@ void solve(Session& session, const PoissonArguments& options, const PoissonExpre
   together([&] { f = given.rhs.at(part.mesh.points()); });
   const DistributedPoisson poisson = session.phase(
       "setup", [&] { return DistributedPoisson(part, discretization, placed.conditions); });
+  report_share(session, poisson.share());
   const PoissonSolution solution = session.phase("solve", [&] { return poisson.solve(f); });
 
   const Vector& u = solution.values;

@@ -43,7 +43,16 @@ using Pair = DistributedPair;
 struct Work {
   std::string method = "eigenpairs of the checkpoint";
   Index iterations = 0;  // of the inner solver
+  Index found = 0;       // pairs before this solver's
+  std::function<void(Index)> progress{};
 };
+
+PetscErrorCode show_progress(EPS, PetscInt, PetscInt converged, PetscScalar*, PetscScalar*,
+                             PetscReal*, PetscInt, void* work) {
+  const Work& it = *static_cast<const Work*>(work);
+  it.progress(it.found + static_cast<Index>(converged));
+  return 0;
+}
 
 /// S x = lambda M x with rows that take no part far above all eigenvalues.
 class Problem {
@@ -212,6 +221,7 @@ std::vector<Pair> Problem::smallest(Index count, const std::vector<Vec>& complem
   }
   Vec starts[1] = {start};
   check(EPSSetInitialSpace(solver, 1, starts));
+  if (work.progress) check(EPSMonitorSet(solver, show_progress, &work, nullptr));
   check(EPSSetFromOptions(solver));
   check(EPSSolve(solver));
   EPSType type = nullptr;
@@ -284,7 +294,8 @@ std::vector<Pair> saved_pairs(const std::filesystem::path& path, const Problem& 
 template <class Mesh>
 EigenPairs solve(const MeshPart<Mesh>& part, const Discretization& discretization, Index count,
                  const std::vector<Index>& dirichlet_vertices,
-                 const std::filesystem::path& checkpoint) {
+                 const std::filesystem::path& checkpoint,
+                 const std::function<void(Index)>& progress) {
   const Problem problem(part, discretization, dirichlet_vertices);
   if (count < 1 || count > problem.n_free)
     throw Shared<InvalidOption>(std::to_string(count) + " eigenpairs of " +
@@ -295,12 +306,15 @@ EigenPairs solve(const MeshPart<Mesh>& part, const Discretization& discretizatio
   std::vector<Vec> complement(constants.begin(), constants.end());
   EigenPairs result;
   Work work;
+  // A solver may find more than it was asked for.
+  if (progress) work.progress = [&](Index found) { progress(std::min(found, count)); };
   result.zero_modes = static_cast<Index>(constants.size());
   const Index wanted = count - std::min(count, result.zero_modes);
   if (wanted > 0) {
     pairs = saved_pairs(checkpoint, problem, part.numbers);
     for (const Pair& pair : pairs) complement.push_back(pair.vector);
     while (static_cast<Index>(pairs.size()) < wanted) {
+      work.found = result.zero_modes + static_cast<Index>(pairs.size());
       const Index missing = wanted - static_cast<Index>(pairs.size());
       for (Pair& pair : problem.smallest(checkpoint.empty() ? missing : std::min(kBatch, missing),
                                          complement, work)) {
@@ -312,6 +326,7 @@ EigenPairs solve(const MeshPart<Mesh>& part, const Discretization& discretizatio
     const auto ascending = [](const Pair& a, const Pair& b) { return a.value < b.value; };
     std::sort(pairs.begin(), pairs.end(), ascending);
     // The Krylov space of one vector may miss members of a cluster.
+    work.progress = {};
     while (static_cast<Index>(complement.size()) < problem.n_free) {
       std::vector<Pair> next = problem.smallest(1, complement, work);
       if (!(next[0].value < pairs[static_cast<std::size_t>(wanted) - 1].value * (1 - kCluster)))
@@ -345,15 +360,17 @@ EigenPairs solve(const MeshPart<Mesh>& part, const Discretization& discretizatio
 EigenPairs distributed_eigenmodes(const MeshPart<PolygonMesh>& part,
                                   const Discretization& discretization, Index count,
                                   const std::vector<Index>& dirichlet_vertices,
-                                  const std::filesystem::path& checkpoint) {
-  return solve(part, discretization, count, dirichlet_vertices, checkpoint);
+                                  const std::filesystem::path& checkpoint,
+                                  const std::function<void(Index)>& progress) {
+  return solve(part, discretization, count, dirichlet_vertices, checkpoint, progress);
 }
 
 EigenPairs distributed_eigenmodes(const MeshPart<PolyhedralMesh>& part,
                                   const Discretization& discretization, Index count,
                                   const std::vector<Index>& dirichlet_vertices,
-                                  const std::filesystem::path& checkpoint) {
-  return solve(part, discretization, count, dirichlet_vertices, checkpoint);
+                                  const std::filesystem::path& checkpoint,
+                                  const std::function<void(Index)>& progress) {
+  return solve(part, discretization, count, dirichlet_vertices, checkpoint, progress);
 }
 
 }  // namespace carat

@@ -2,6 +2,7 @@
 // Eigenfunctions of the Laplacian over all processes.
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "carat/apps/eigenmodes.h"
@@ -19,16 +20,19 @@ namespace carat {
 /// \param checkpoint          a file that all processes see: the pairs found so far are kept in it,
 ///                            and a run that ended early goes on from there, also with another
 ///                            number of processes; empty: none. The caller removes it.
+/// \param progress            called with the number of pairs found so far
 /// \return vectors at the part's vertices
 /// \throws InvalidOption, SolverFailure  as eigenmodes(), Shared; the checkpoint of another problem
 /// \throws IoError                       Shared; a checkpoint that cannot be read or written
 EigenPairs distributed_eigenmodes(const MeshPart<PolygonMesh>& part,
                                   const Discretization& discretization, Index count,
                                   const std::vector<Index>& dirichlet_vertices = {},
-                                  const std::filesystem::path& checkpoint = {});
+                                  const std::filesystem::path& checkpoint = {},
+                                  const std::function<void(Index)>& progress = {});
 EigenPairs distributed_eigenmodes(const MeshPart<PolyhedralMesh>& part,
                                   const Discretization& discretization, Index count,
                                   const std::vector<Index>& dirichlet_vertices = {},
-                                  const std::filesystem::path& checkpoint = {});
+                                  const std::filesystem::path& checkpoint = {},
+                                  const std::function<void(Index)>& progress = {});
 
 }  // namespace carat

@@ -83,6 +83,7 @@ struct DistributedPoisson::Impl {
   Index first_row, n_vertices;
   std::size_t n_components;
   std::shared_ptr<const SymmetricOperator> mass;  // the part's
+  PartShare share;
   std::vector<Index> part_components;
   // Of the own rows:
   std::vector<Index> components;
@@ -141,6 +142,8 @@ void DistributedPoisson::set_up(const MeshPart<Mesh>& part, const Discretization
   it.mass = std::move(mass);
   const Index first = numbers.first_row, n_own = it.exchange.n_own();
   const bool assembled = operator_of_part->assembled();
+  if (assembled) it.share += share_of(*operator_of_part->matrix(), numbers);
+  it.share += share_of(sparser, numbers);
   PetscMatrix system = assembled ? it.exchange.sum(*operator_of_part->matrix())
                                  : product_of_all(it.exchange, operator_of_part);
   PetscMatrix like;
@@ -277,6 +280,8 @@ DistributedPoisson::DistributedPoisson(const MeshPart<PolyhedralMesh>& part,
 
 DistributedPoisson::~DistributedPoisson() = default;
 DistributedPoisson::DistributedPoisson(DistributedPoisson&&) noexcept = default;
+
+const PartShare& DistributedPoisson::share() const { return impl_->share; }
 
 const std::vector<Index>& DistributedPoisson::components() const { return impl_->part_components; }
 

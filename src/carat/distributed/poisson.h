@@ -48,6 +48,9 @@ class DistributedPoisson {
   /// \param error  at the part's vertices
   ErrorNorms norms(const Vector& error) const;
 
+  /// What the part brought to matrices: of the system, unless it is a product, and of the one that
+  /// preconditions.
+  const PartShare& share() const;
   /// Component of each of the part's vertices; -1: in no element with a measure.
   const std::vector<Index>& components() const;
 

@@ -35,6 +35,11 @@ struct PartShare {
   std::int64_t entries = 0, sent = 0;
   /// As coordinates: two indices and a value.
   std::int64_t bytes_sent() const { return 16 * sent; }
+  PartShare& operator+=(const PartShare& other) {
+    entries += other.entries;
+    sent += other.sent;
+    return *this;
+  }
 };
 /// \param of_part  over the part's vertices; its zeros are not counted
 PartShare share_of(const SparseMatrix& of_part, const PartNumbers& numbers);
