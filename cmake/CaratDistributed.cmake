@@ -47,8 +47,10 @@ if(PETSC_FOUND AND Scotch_FOUND AND CARAT_BUILD_IO)
   # The other headers show PETSc or MPI.
   target_sources(carat_distributed PUBLIC FILE_SET HEADERS BASE_DIRS src
                  FILES src/carat/distributed/eigenmodes.h src/carat/distributed/heat_geodesics.h
-                       src/carat/distributed/poisson.h
-                       src/carat/distributed/processes.h src/carat/distributed/read_parts.h)
+                       src/carat/distributed/mesh_pieces.h
+                       src/carat/distributed/poisson.h src/carat/distributed/processes.h
+                       src/carat/distributed/read_parts.h src/carat/distributed/scatter.h
+                       src/carat/distributed/write_parts.h)
   target_link_libraries(carat_distributed PUBLIC carat_parts carat_io carat_partition
                         PRIVATE PkgConfig::PETSC MPI::MPI_CXX)
   set_target_properties(carat_distributed PROPERTIES EXPORT_NAME distributed)

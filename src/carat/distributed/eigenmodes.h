@@ -22,7 +22,8 @@ namespace carat {
 ///                            number of processes; empty: none. The caller removes it.
 /// \param progress            called with the number of pairs found so far
 /// \return vectors at the part's vertices
-/// \throws InvalidOption, SolverFailure  as eigenmodes(), Shared; the checkpoint of another problem
+/// \throws InvalidOption  as eigenmodes(), Shared; the checkpoint of another problem
+/// \throws SolverFailure  likewise
 /// \throws IoError                       Shared; a checkpoint that cannot be read or written
 EigenPairs distributed_eigenmodes(const MeshPart<PolygonMesh>& part,
                                   const Discretization& discretization, Index count,

@@ -16,7 +16,8 @@ class DistributedGeodesics {
  public:
   /// Collective. \param discretization  of discretize_part(), with its gradient, for directions
   ///                                 of elements also its frames
-  /// \throws InvalidOption, SolverFailure  as HeatGeodesics, Shared
+  /// \throws InvalidOption  as HeatGeodesics, Shared
+  /// \throws SolverFailure  likewise
   DistributedGeodesics(const MeshPart<PolygonMesh>& part, Discretization discretization,
                        const HeatGeodesicsOptions& options = {});
   DistributedGeodesics(const MeshPart<PolyhedralMesh>& part, Discretization discretization,

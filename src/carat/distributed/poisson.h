@@ -27,7 +27,8 @@ class DistributedPoisson {
   /// \param conditions  numbered as in the part. Dirichlet data count for the part's own vertices,
   ///                    those of sides for its own interfaces; others are ignored, so that data may
   ///                    be given wherever they are known.
-  /// \throws InvalidOption, SolverFailure  as Poisson, Shared
+  /// \throws InvalidOption  as Poisson, Shared
+  /// \throws SolverFailure  likewise
   DistributedPoisson(const MeshPart<PolygonMesh>& part, const Discretization& discretization,
                      const BoundaryConditions& conditions = {});
   DistributedPoisson(const MeshPart<PolyhedralMesh>& part, const Discretization& discretization,

@@ -13,11 +13,12 @@ namespace carat {
 /// \throws  as divide(), Shared
 AnyPartData scatter(const MeshData* whole, std::span<const Index> element_part);
 
-/// Collective. Rows of values of the part's own vertices, elements, to the first process: there
-/// one row each of the whole mesh, elsewhere empty.
-/// \param values  one row a vertex or element of the part
-/// \param n_whole  of the whole mesh; others keep a row of zeros
+/// Collective. Rows of values of the part's own vertices to the first process: there one row a
+/// vertex of the whole mesh, elsewhere empty.
+/// \param values  one row a vertex of the part
 Matrix gather_vertices(const PartNumbers& numbers, const Matrix& values);
+/// Collective. The same of elements.
+/// \param n_whole  of the whole mesh; those that no process has keep a row of zeros
 Matrix gather_elements(const PartNumbers& numbers, const Matrix& values, Index n_whole);
 
 /// Collective. The numbers of all processes, ascending, in the first; elsewhere empty.

@@ -17,7 +17,8 @@ bool is_parallel_index(const std::filesystem::path& path);
 /// process succeeds in that, nothing appears and what was there stays.
 /// \param path    .pvtu, of surfaces also .pvtp
 /// \param fields  at the part's vertices and elements, those of the halo too, which are not written
-/// \throws InvalidOption, IoError  Shared
+/// \throws InvalidOption  Shared
+/// \throws IoError  likewise
 void write_parts(const std::filesystem::path& path, const MeshPart<PolygonMesh>& part,
                  const MeshFields& fields);
 void write_parts(const std::filesystem::path& path, const MeshPart<PolyhedralMesh>& part,
