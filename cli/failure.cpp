@@ -49,10 +49,11 @@ int report_failure(const Failure& failure, bool json) {
   std::cout.flush();
   std::cerr << "carat: error: " << failure.message << '\n';
   if (json) {
-    const Json object = {{"error",
-                          {{"kind", failure.kind},
-                           {"message", failure.message},
-                           {"elements", first_elements(failure.elements)}}}};
+    const Json object = {
+        {"error",
+         {{"kind", failure.kind},
+          {"message", failure.message},
+          {"elements", first_elements({failure.elements.begin(), failure.elements.end()})}}}};
     std::cout << object.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
   }
   return failure.exit_code;

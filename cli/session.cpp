@@ -35,20 +35,22 @@ void Session::note(const std::string& message) {
 }
 
 void Session::add_diagnostics(const Diagnostics& diagnostics) {
-  for (const Finding& finding : diagnostics.findings()) {
-    // What the mesh and an operator both find is news once.
-    const bool known = diagnostics_.contains(finding.name);
-    diagnostics_[finding.name] = {{"count", finding.elements.size()},
-                                  {"elements", first_elements(finding.elements)},
-                                  {"meaning", finding.meaning}};
-    if (known || finding.elements.empty()) continue;
-    std::string line =
-        "! " + describe_count(static_cast<std::int64_t>(finding.elements.size()), finding.meaning) +
-        " (";
-    for (std::size_t i = 0; i < finding.elements.size() && i < 5; ++i)
-      line += (i > 0 ? ", " : "") + std::to_string(finding.elements[i]);
-    say(line + (finding.elements.size() > 5 ? ", ...)" : ")"));
-  }
+  for (const Finding& finding : diagnostics.findings())
+    add_finding(finding.name, finding.meaning, {finding.elements.begin(), finding.elements.end()});
+}
+
+void Session::add_finding(const std::string& name, const std::string& meaning,
+                          const std::vector<std::int64_t>& elements) {
+  // What the mesh and an operator both find is news once.
+  const bool known = diagnostics_.contains(name);
+  diagnostics_[name] = {
+      {"count", elements.size()}, {"elements", first_elements(elements)}, {"meaning", meaning}};
+  if (known || elements.empty()) return;
+  std::string line =
+      "! " + describe_count(static_cast<std::int64_t>(elements.size()), meaning) + " (";
+  for (std::size_t i = 0; i < elements.size() && i < 5; ++i)
+    line += (i > 0 ? ", " : "") + std::to_string(elements[i]);
+  say(line + (elements.size() > 5 ? ", ...)" : ")"));
 }
 
 Session::Phase::Phase(Session& owner, const char* phase)
@@ -135,7 +137,7 @@ std::string describe_count(std::int64_t n, std::string what) {
   return std::to_string(n) + " " + what;
 }
 
-Json first_elements(const std::vector<Index>& elements) {
+Json first_elements(const std::vector<std::int64_t>& elements) {
   Json list = Json::array();
   for (std::size_t i = 0; i < elements.size() && i < 100; ++i) list.push_back(elements[i]);
   return list;

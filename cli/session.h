@@ -41,6 +41,8 @@ class Session {
   void note(const std::string& message);
   /// Findings: all of them in JSON, those that found something as lines.
   void add_diagnostics(const Diagnostics& diagnostics);
+  void add_finding(const std::string& name, const std::string& meaning,
+                   const std::vector<std::int64_t>& elements);
 
   /// Runs `work` as a named phase: timed, and shown on a terminal while it lasts. Phases of the
   /// same name add up. Work that takes a ProgressLine can tell there how far it is.
@@ -102,6 +104,6 @@ std::string count(std::int64_t n, const std::string& noun);
 /// "2 faces of one cell", "1 face of one cell": the first noun follows the number.
 std::string describe_count(std::int64_t n, std::string what);
 /// The first hundred entries: enough to find the spot, small enough to read.
-Json first_elements(const std::vector<Index>& elements);
+Json first_elements(const std::vector<std::int64_t>& elements);
 
 }  // namespace carat::cli

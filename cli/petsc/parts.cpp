@@ -195,7 +195,8 @@ Discretization discretize(Session& session, const MeshPart<Mesh>& part,
     session.say("operator " + discretization.name + ": " + count(part.numbers.n_vertices, "row") +
                 ", " +
                 (n_processes() == 1 ? "1 process" : std::to_string(n_processes()) + " processes"));
-    session.add_diagnostics(whole_diagnostics(part, discretization, strict));
+    for (const WholeFinding& finding : whole_diagnostics(part, discretization, strict))
+      session.add_finding(finding.name, finding.meaning, finding.elements);
     report_sizes(session, part.numbers);
     if (need == MatrixNeed::Entries)
       report_share(session, share_of(discretization.stiffness, part.numbers));

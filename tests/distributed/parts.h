@@ -43,7 +43,7 @@ inline Vector select(const Vector& whole, const PartNumbers& numbers) {
 /// The conditions on what the part holds, in its numbers.
 inline BoundaryConditions select(const BoundaryConditions& whole, const PartNumbers& numbers) {
   BoundaryConditions own;
-  const auto find = [](const Array<Index>& list, Index number) {
+  const auto find = [](const auto& list, Index number) {
     const auto at = std::lower_bound(list.begin(), list.end(), number);
     return at != list.end() && *at == number ? static_cast<Index>(at - list.begin()) : -1;
   };

@@ -37,6 +37,32 @@ TEST(MeshPieces, faces_without_ids_are_numbered_as_the_cells_name_them) {
   }
 }
 
+template <class Mesh>
+void check_many_interfaces(const Mesh& mesh, bool have_ids) {
+  for_cuts(mesh, [&](const std::vector<Index>& cut) {
+    MeshPiece<Mesh> piece = piece_of(mesh, cut);
+    if (!have_ids) piece.interface_ids.clear();
+    PartData<Mesh> expected = expected_part(mesh, cut);
+    expected.part = with_first_interface(std::move(expected.part), kManyInterfaces);
+    const PartData<Mesh> data = join_pieces(std::move(piece), kManyInterfaces);
+    expect_same(data, expected);
+    for (const std::int64_t number : data.part.numbers.interfaces)
+      EXPECT_GE(number, kManyInterfaces);
+  });
+}
+
+TEST(MeshPieces, interfaces_are_numbered_beyond_32_bits) {
+  for (const auto& [name, mesh] : surfaces_to_divide()) {
+    SCOPED_TRACE(name);
+    check_many_interfaces(mesh, false);
+  }
+  for (const auto& [name, mesh] : volumes_to_divide()) {
+    SCOPED_TRACE(name);
+    check_many_interfaces(mesh, true);
+    check_many_interfaces(numbered_by_cells(mesh), false);
+  }
+}
+
 bool has_equal_points(const Points& points) {
   std::vector<std::array<double, 3>> places;
   for (Index v = 0; v < points.rows(); ++v)

@@ -23,6 +23,25 @@ MeshPart<Mesh> sent(const Mesh& mesh, const MeshDivision& division) {
   return part_of(mesh, division, 0);
 }
 
+/// What a message gives back.
+template <class Mesh>
+MeshPart<Mesh> through_message(const MeshPart<Mesh>& part) {
+  Message message;
+  put(message, part);
+  MeshPart<Mesh> taken;
+  take(message, taken);
+  EXPECT_EQ(message.left(), 0U);
+  return taken;
+}
+
+TEST(Message, interfaces_may_have_numbers_beyond_32_bits) {
+  const auto surface =
+      with_first_interface(own_block(surfaces_to_divide()[0].second), kManyInterfaces);
+  expect_same(through_message(surface), surface);
+  const auto volume = with_first_interface(own_block(hex_grid(3)), kManyInterfaces);
+  expect_same(through_message(volume), volume);
+}
+
 TEST(Message, parts_arrive_as_they_are) {
   for (const auto& [name, mesh] : surfaces_to_divide()) {
     SCOPED_TRACE(name);

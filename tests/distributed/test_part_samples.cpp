@@ -12,6 +12,12 @@ void check(const Mesh& mesh, const std::string& name) {
   const auto part = own_part(mesh, scattered(n_elements(mesh), n_processes()));
   const Discretization own = discretize_part(part, name);
   const PartSamples samples = number_samples(part, own);
+  // Interfaces count by their order alone.
+  const PartSamples of_many = number_samples(with_first_interface(part, kManyInterfaces), own);
+  EXPECT_EQ(of_many.numbers, samples.numbers);
+  EXPECT_EQ(of_many.first_rows, samples.first_rows);
+  EXPECT_EQ(of_many.n_samples, samples.n_samples);
+  EXPECT_EQ(of_many.n_rows, samples.n_rows);
   ASSERT_EQ(samples.n_samples, whole.n_samples());
   ASSERT_EQ(samples.n_rows, whole.gradient.rows());
   const double scale = whole.gradient.coeffs().cwiseAbs().maxCoeff();
@@ -53,20 +59,41 @@ TEST(PartSamples, are_numbered_as_in_the_whole_mesh) {
   }
 }
 
+const WholeFinding* find(const std::vector<WholeFinding>& findings, const std::string& name) {
+  for (const WholeFinding& finding : findings)
+    if (finding.name == name) return &finding;
+  return nullptr;
+}
+
+/// Which findings of an operator are of the interfaces of a mesh.
+bool is_of_interfaces(const PolygonMesh&, const std::string&) { return false; }
+bool is_of_interfaces(const PolyhedralMesh&, const std::string& finding) {
+  return finding.ends_with("_virtual_vertices") || finding == "degenerate_faces";
+}
+
 template <class Mesh>
 void check_findings(const Mesh& mesh, const std::string& name) {
   const Discretization whole = discretize(mesh, name);
   const auto part = own_part(mesh, scattered(n_elements(mesh), n_processes()));
   const Discretization own = discretize_part(part, name);
-  const Diagnostics found = whole_diagnostics(part, own, false);
+  const std::vector<WholeFinding> found = whole_diagnostics(part, own, false),
+                                  of_many = whole_diagnostics(
+                                      with_first_interface(part, kManyInterfaces), own, false);
   if (rank() > 0) {
-    EXPECT_TRUE(found.findings().empty());
+    EXPECT_TRUE(found.empty());
   } else {
     for (const Finding& finding : whole.diagnostics.findings()) {
       SCOPED_TRACE(finding.name);
-      ASSERT_NE(found.find(finding.name), nullptr);
-      EXPECT_EQ(found.find(finding.name)->elements, finding.elements);
-      EXPECT_EQ(found.find(finding.name)->meaning, finding.meaning);
+      std::vector<std::int64_t> elements(finding.elements.begin(), finding.elements.end());
+      const WholeFinding* const same = find(found, finding.name);
+      ASSERT_NE(same, nullptr);
+      EXPECT_EQ(same->elements, elements);
+      EXPECT_EQ(same->meaning, finding.meaning);
+      if (is_of_interfaces(mesh, finding.name))
+        for (std::int64_t& element : elements) element += kManyInterfaces;
+      const WholeFinding* const beyond = find(of_many, finding.name);
+      ASSERT_NE(beyond, nullptr);
+      EXPECT_EQ(beyond->elements, elements);
     }
   }
   if (whole.diagnostics.count("excluded_samples") == 0) {

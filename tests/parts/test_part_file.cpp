@@ -39,7 +39,7 @@ TEST(PartFile, patches_are_the_faces_that_the_part_has) {
   for_divisions(mesh, [&](const MeshDivision& division) {
     for (Index p = 0; p < division.n_parts; ++p) {
       const PartData<PolyhedralMesh> part = part_data_of(data, division, p);
-      const Array<Index>& numbers = part.part.numbers.interfaces;
+      const Array<std::int64_t>& numbers = part.part.numbers.interfaces;
       ASSERT_EQ(part.patches.size(), data.patches.size());
       for (std::size_t k = 0; k < part.patches.size(); ++k)
         for (Index f = 0; f < static_cast<Index>(numbers.size()); ++f) {
@@ -97,8 +97,10 @@ TEST_F(DamagedPartFile, what_is_foreign_is_named) {
   std::reverse(bad.begin() + 8, bad.begin() + 12);
   expect(bad, "another order of bytes");
   bad = good;
-  bad[12] = 2;
-  expect(bad, "is of version 2");
+  for (const char version : {1, 3}) {
+    bad[12] = version;
+    expect(bad, "is of version " + std::to_string(version));
+  }
   bad = good;
   bad[16] = 8;
   expect(bad, "indices of 8 bytes");
@@ -113,6 +115,22 @@ TEST_F(DamagedPartFile, what_is_foreign_is_named) {
   EXPECT_EQ(failure(path, 2), "");
   EXPECT_THROW(read_part(path, 2), InvalidOption);
   EXPECT_THROW(read_part(path, -1), InvalidOption);
+}
+
+// A part file holds parts as messages.
+TEST(Message, data_of_parts_with_interfaces_beyond_32_bits_come_back) {
+  const PolyhedralMesh mesh = hex_grid(3);
+  for_divisions(mesh, [&](const MeshDivision& division) {
+    for (Index p = 0; p < division.n_parts; ++p) {
+      PartData<PolyhedralMesh> data = part_data_of(sample_data(mesh), division, p), taken;
+      data.part = with_first_interface(std::move(data.part), kManyInterfaces);
+      Message message;
+      put(message, data);
+      take(message, taken);
+      EXPECT_EQ(message.left(), 0U);
+      expect_same(taken, data);
+    }
+  });
 }
 
 TEST(Message, claims_beyond_its_end_are_refused) {

@@ -35,6 +35,17 @@ inline Index n_elements(const PolyhedralMesh& mesh) { return mesh.n_cells(); }
 inline Index n_interfaces(const PolygonMesh& mesh) { return mesh.n_edges(); }
 inline Index n_interfaces(const PolyhedralMesh& mesh) { return mesh.n_faces(); }
 
+/// A first number of interfaces. In 32 bits, which hold none of these, not even their order is
+/// kept.
+constexpr std::int64_t kManyInterfaces = (std::int64_t{3} << 31) - 10;
+
+/// The part as it would be if so many interfaces came before those of the mesh.
+template <class Mesh>
+MeshPart<Mesh> with_first_interface(MeshPart<Mesh> part, std::int64_t first) {
+  for (std::int64_t& number : part.numbers.interfaces) number += first;
+  return part;
+}
+
 /// Blocks of consecutive elements.
 inline std::vector<Index> in_blocks(Index n_elements, Index n_parts) {
   std::vector<Index> parts;

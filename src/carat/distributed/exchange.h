@@ -123,7 +123,7 @@ std::vector<Answer> ask(const std::vector<Question>& questions, const Owner& own
   return result;
 }
 
-/// \throws Shared<InvalidMesh>  more than Index and PetscInt can number
+/// \throws Shared<InvalidMesh>  n is more than Index and PetscInt can number
 /// \param what  e.g. "vertices"
 void check_count(std::int64_t n, const std::string& what);
 

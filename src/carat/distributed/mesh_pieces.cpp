@@ -35,9 +35,9 @@ struct Bundle {
   Array<double> places;                                      ///< three a vertex
   std::vector<Array<double>> vertex_values, element_values;  ///< field by field
   Array<Index> elements;
-  Csr entries;  ///< element -> vertices, of volumes -> faces
+  Csr entries;  ///< element -> vertices, of volumes -> places in `interfaces`
   /// Of surfaces those of the entries; of volumes the faces, with what follows.
-  Array<Index> interfaces;
+  Array<std::int64_t> interfaces;
   Csr faces, patches;  ///< face -> vertices, -> patches that it is in
   Array<FaceCells> sides;
 };
@@ -91,14 +91,18 @@ void append_values(Array<double>& to, std::span<const double> from, std::size_t 
 }
 
 /// Which bundle, and where in it.
+template <class Number>
 struct Place {
-  Index number;
+  Number number;
   std::uint32_t bundle, row;
 };
 
 /// The places of all numbers, ascending, each once: in the first bundle that has it.
-std::vector<Place> places_of(const std::vector<Bundle>& bundles, Array<Index> Bundle::*numbers) {
-  std::vector<Place> places;
+template <class Number>
+std::vector<Place<Number>> places_of(const std::vector<Bundle>& bundles,
+                                     Array<Number> Bundle::*numbers) {
+  using Entry = Place<Number>;
+  std::vector<Entry> places;
   std::size_t n = 0;
   for (const Bundle& bundle : bundles) n += (bundle.*numbers).size();
   if (n > kIndexLimit)
@@ -109,37 +113,41 @@ std::vector<Place> places_of(const std::vector<Bundle>& bundles, Array<Index> Bu
     for (std::size_t k = 0; k < (bundles[b].*numbers).size(); ++k)
       places.push_back(
           {(bundles[b].*numbers)[k], static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(k)});
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+  std::sort(places.begin(), places.end(), [](const Entry& a, const Entry& b) {
     return std::tie(a.number, a.bundle, a.row) < std::tie(b.number, b.bundle, b.row);
   });
   places.erase(std::unique(places.begin(), places.end(),
-                           [](const Place& a, const Place& b) { return a.number == b.number; }),
+                           [](const Entry& a, const Entry& b) { return a.number == b.number; }),
                places.end());
   return places;
 }
 
-Array<Index> numbers_of(const std::vector<Place>& places) {
-  Array<Index> numbers;
+template <class Number>
+Array<Number> numbers_of(const std::vector<Place<Number>>& places) {
+  Array<Number> numbers;
   numbers.reserve(places.size());
-  for (const Place& place : places) numbers.push_back(place.number);
+  for (const Place<Number>& place : places) numbers.push_back(place.number);
   return numbers;
 }
 
 /// Where a number is in an ascending list; -1: nowhere.
-Index find(const Array<Index>& numbers, Index number) {
+template <class Number>
+Index find(const Array<Number>& numbers, Number number) {
   const auto at = std::lower_bound(numbers.begin(), numbers.end(), number);
   return at != numbers.end() && *at == number ? static_cast<Index>(at - numbers.begin()) : -1;
 }
 
-/// Rows of all bundles, with their entries numbered by their places in `numbers`.
-Csr collect(const std::vector<Bundle>& bundles, Csr Bundle::*rows, const std::vector<Place>& places,
-            const Array<Index>& numbers) {
+/// Rows of all bundles, with their entries numbered as here(bundle, entry) says.
+template <class Number, class Here>
+Csr collect(const std::vector<Bundle>& bundles, Csr Bundle::*rows,
+            const std::vector<Place<Number>>& places, const Here& here) {
   Csr collected;
   std::vector<Index> row;
-  for (const Place& place : places) {
+  for (const Place<Number>& place : places) {
     row.clear();
-    for (const Index entry : (bundles[place.bundle].*rows).row(static_cast<Index>(place.row)))
-      row.push_back(find(numbers, entry));
+    const Bundle& bundle = bundles[place.bundle];
+    for (const Index entry : (bundle.*rows).row(static_cast<Index>(place.row)))
+      row.push_back(here(bundle, entry));
     append_row(collected, row);
   }
   return collected;
@@ -147,13 +155,14 @@ Csr collect(const std::vector<Bundle>& bundles, Csr Bundle::*rows, const std::ve
 
 std::vector<Field> collect(const std::vector<Bundle>& bundles,
                            std::vector<Array<double>> Bundle::*values,
-                           const std::vector<Place>& places, const std::vector<Field>& shapes) {
+                           const std::vector<Place<Index>>& places,
+                           const std::vector<Field>& shapes) {
   std::vector<Field> fields;
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     Field field{shapes[k].name, shapes[k].components, {}};
     const auto components = static_cast<std::size_t>(field.components);
     field.values.reserve(places.size() * components);
-    for (const Place& place : places) {
+    for (const Place<Index>& place : places) {
       const double* const first =
           (bundles[place.bundle].*values)[k].data() + place.row * components;
       field.values.insert(field.values.end(), first, first + components);
@@ -340,6 +349,7 @@ class Packer {
         vertex_taken_(vertices.numbers.size(), 0) {
     if constexpr (std::is_same_v<Mesh, PolyhedralMesh>) {
       face_taken_.assign(static_cast<std::size_t>(piece.mesh.n_faces()), 0);
+      face_place_.resize(face_taken_.size());
       std::vector<std::pair<Index, Index>> in_patch;
       for (std::size_t k = 0; k < piece.patches.size(); ++k)
         for (const Index f : piece.patches[k].faces) in_patch.emplace_back(f, patch_numbers[k]);
@@ -418,9 +428,13 @@ class Packer {
     row_.clear();
     for (const Index face : mesh.cell(e)) {
       const auto f = static_cast<std::size_t>(face);
-      row_.push_back(interface_book_.numbers[f]);
-      if (face_taken_[f] == round_) continue;
+      if (face_taken_[f] == round_) {
+        row_.push_back(face_place_[f]);
+        continue;
+      }
       face_taken_[f] = round_;
+      face_place_[f] = static_cast<Index>(bundle.interfaces.size());
+      row_.push_back(face_place_[f]);
       bundle.interfaces.push_back(interface_book_.numbers[f]);
       bundle.sides.push_back(interface_book_.sides[f]);
       append_row(bundle.faces, interface_book_.faces.row(face));
@@ -436,23 +450,30 @@ class Packer {
   Csr patches_;  // face -> its patches in the whole mesh
   int round_ = 0;
   std::vector<int> vertex_taken_, face_taken_;
+  std::vector<Index> face_place_;  // in the bundle of the round
   std::vector<Index> row_;
 };
 
-PolygonMesh make_mesh(const std::vector<Bundle>& bundles, const std::vector<Place>& elements,
+/// Entries that are numbers of vertices.
+auto vertices_in(const PartNumbers& numbers) {
+  return [&numbers](const Bundle&, Index vertex) { return find(numbers.vertices, vertex); };
+}
+
+PolygonMesh make_mesh(const std::vector<Bundle>& bundles, const std::vector<Place<Index>>& elements,
                       const PartNumbers& numbers, Points points, std::vector<BoundaryPatch>&,
                       const PolygonMesh&) {
   return PolygonMesh(std::move(points),
-                     collect(bundles, &Bundle::entries, elements, numbers.vertices));
+                     collect(bundles, &Bundle::entries, elements, vertices_in(numbers)));
 }
 
-PolyhedralMesh make_mesh(const std::vector<Bundle>& bundles, const std::vector<Place>& elements,
-                         const PartNumbers& numbers, Points points,
-                         std::vector<BoundaryPatch>& patches, const PolyhedralMesh&) {
-  const std::vector<Place> places = places_of(bundles, &Bundle::interfaces);
+PolyhedralMesh make_mesh(const std::vector<Bundle>& bundles,
+                         const std::vector<Place<Index>>& elements, const PartNumbers& numbers,
+                         Points points, std::vector<BoundaryPatch>& patches,
+                         const PolyhedralMesh&) {
+  const std::vector<Place<std::int64_t>> places = places_of(bundles, &Bundle::interfaces);
   const auto here = [&](Index cell) { return cell < 0 ? -1 : find(numbers.elements, cell); };
   Array<FaceCells> face_cells;
-  for (const Place& place : places) {
+  for (const Place<std::int64_t>& place : places) {
     const Bundle& bundle = bundles[place.bundle];
     const FaceCells sides = bundle.sides[place.row];
     for (const Index patch : bundle.patches.row(static_cast<Index>(place.row)))
@@ -461,26 +482,30 @@ PolyhedralMesh make_mesh(const std::vector<Bundle>& bundles, const std::vector<P
     face_cells.push_back({here(sides.below), here(sides.above)});
   }
   return PolyhedralMesh::from_face_cells(
-      std::move(points), collect(bundles, &Bundle::faces, places, numbers.vertices),
-      collect(bundles, &Bundle::entries, elements, numbers.interfaces), std::move(face_cells));
+      std::move(points), collect(bundles, &Bundle::faces, places, vertices_in(numbers)),
+      collect(bundles, &Bundle::entries, elements,
+              [&](const Bundle& bundle, Index face) {
+                return find(numbers.interfaces, bundle.interfaces[static_cast<std::size_t>(face)]);
+              }),
+      std::move(face_cells));
 }
 
 InterfaceBook keep(const MeshPiece<PolygonMesh>& piece, const Numbering& vertices,
-                   const Numbering& elements) {
-  return keep_interfaces(piece.mesh, vertices, elements);
+                   const Numbering& elements, std::int64_t first) {
+  return keep_interfaces(piece.mesh, vertices, elements, first);
 }
 
 InterfaceBook keep(const MeshPiece<PolyhedralMesh>& piece, const Numbering& vertices,
-                   const Numbering& elements) {
+                   const Numbering& elements, std::int64_t first) {
   const bool have_ids =
       agree_on_ids(piece.interface_ids, static_cast<std::size_t>(piece.mesh.n_faces()), "faces");
-  return keep_interfaces(piece.mesh, vertices, elements, piece.interface_ids, have_ids);
+  return keep_interfaces(piece.mesh, vertices, elements, piece.interface_ids, have_ids, first);
 }
 
 /// What a process has to make its part of.
 struct Packed {
   std::vector<Bundle> bundles;  ///< its own elements, then those from others
-  Array<Index> own_interfaces;
+  Array<std::int64_t> own_interfaces;
   PartNumbers numbers;                               ///< those of the whole mesh
   std::vector<Field> vertex_fields, element_fields;  ///< without values
   std::vector<BoundaryPatch> patches;                ///< without faces
@@ -488,7 +513,7 @@ struct Packed {
 
 /// Collective. The piece and all lists about it are gone when it returns.
 template <class Mesh>
-Packed pack(MeshPiece<Mesh> piece) {
+Packed pack(MeshPiece<Mesh> piece, std::int64_t first_interface) {
   Packed packed;
   const auto n_vertices = static_cast<std::size_t>(piece.mesh.n_vertices());
   const auto n_own = static_cast<std::size_t>(n_elements(piece.mesh));
@@ -510,7 +535,7 @@ Packed pack(MeshPiece<Mesh> piece) {
                                  : number_in_order(n_own, "elements");
   const VertexBook vertex_book = keep_vertices(
       vertices, piece.mesh.points(), elements_of_vertices(piece.mesh, elements), component);
-  const InterfaceBook interface_book = keep(piece, vertices, elements);
+  const InterfaceBook interface_book = keep(piece, vertices, elements, first_interface);
   const int rank = own_rank();
   const auto n = static_cast<std::size_t>(n_processes());
   packed.numbers.part = rank;
@@ -554,14 +579,14 @@ PartData<Mesh> assemble(Packed packed) {
   const std::vector<Bundle>& bundles = packed.bundles;
   PartNumbers& numbers = packed.numbers;
   PartData<Mesh> data;
-  const std::vector<Place> elements = places_of(bundles, &Bundle::elements);
+  const std::vector<Place<Index>> elements = places_of(bundles, &Bundle::elements);
   numbers.elements = numbers_of(elements);
   numbers.interfaces = numbers_of(places_of(bundles, &Bundle::interfaces));
-  for (const Place& place : elements) numbers.own_elements.push_back(place.bundle == 0);
+  for (const Place<Index>& place : elements) numbers.own_elements.push_back(place.bundle == 0);
   std::sort(packed.own_interfaces.begin(), packed.own_interfaces.end());
-  for (const Index i : numbers.interfaces)
+  for (const std::int64_t i : numbers.interfaces)
     numbers.own_interfaces.push_back(find(packed.own_interfaces, i) >= 0);
-  const std::vector<Place> vertices = places_of(bundles, &Bundle::vertices);
+  const std::vector<Place<Index>> vertices = places_of(bundles, &Bundle::vertices);
   numbers.vertices = numbers_of(vertices);
   Points points(static_cast<Eigen::Index>(vertices.size()), 3);
   for (std::size_t k = 0; k < vertices.size(); ++k) {
@@ -584,8 +609,8 @@ PartData<Mesh> assemble(Packed packed) {
 }
 
 template <class Mesh>
-PartData<Mesh> join(MeshPiece<Mesh> piece) {
-  Packed packed = pack(std::move(piece));
+PartData<Mesh> join(MeshPiece<Mesh> piece, std::int64_t first_interface) {
+  Packed packed = pack(std::move(piece), first_interface);
   PartData<Mesh> data;
   together([&] { data = assemble<Mesh>(std::move(packed)); });
   return data;
@@ -593,9 +618,12 @@ PartData<Mesh> join(MeshPiece<Mesh> piece) {
 
 }  // namespace
 
-PartData<PolygonMesh> join_pieces(MeshPiece<PolygonMesh> piece) { return join(std::move(piece)); }
-PartData<PolyhedralMesh> join_pieces(MeshPiece<PolyhedralMesh> piece) {
-  return join(std::move(piece));
+PartData<PolygonMesh> join_pieces(MeshPiece<PolygonMesh> piece, std::int64_t first_interface) {
+  return join(std::move(piece), first_interface);
+}
+PartData<PolyhedralMesh> join_pieces(MeshPiece<PolyhedralMesh> piece,
+                                     std::int64_t first_interface) {
+  return join(std::move(piece), first_interface);
 }
 
 }  // namespace carat

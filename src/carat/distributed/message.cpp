@@ -44,9 +44,9 @@ void put(Message& message, const PartNumbers& numbers) {
                             numbers.n_vertices, numbers.n_components})
     message.put(value);
   for (const Array<Index>* list :
-       {&numbers.vertices, &numbers.vertex_rows, &numbers.vertex_components, &numbers.elements,
-        &numbers.interfaces})
+       {&numbers.vertices, &numbers.vertex_rows, &numbers.vertex_components, &numbers.elements})
     message.put_list(*list);
+  message.put_list(numbers.interfaces);
   put(message, numbers.own_elements);
   put(message, numbers.own_interfaces);
 }
@@ -55,9 +55,10 @@ void take(Message& message, PartNumbers& numbers) {
   for (Index* const value : {&numbers.part, &numbers.n_parts, &numbers.first_row, &numbers.end_row,
                              &numbers.n_vertices, &numbers.n_components})
     message.take(*value);
-  for (Array<Index>* list : {&numbers.vertices, &numbers.vertex_rows, &numbers.vertex_components,
-                             &numbers.elements, &numbers.interfaces})
+  for (Array<Index>* list :
+       {&numbers.vertices, &numbers.vertex_rows, &numbers.vertex_components, &numbers.elements})
     message.take_list(*list);
+  message.take_list(numbers.interfaces);
   take(message, numbers.own_elements);
   take(message, numbers.own_interfaces);
 }

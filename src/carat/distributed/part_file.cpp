@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<char, 8> kMagic{'c', 'a', 'r', 'a', 't', 'P', 'R', 'T'};
-constexpr std::uint32_t kByteOrder = 0x01020304, kVersion = 1;
+constexpr std::uint32_t kByteOrder = 0x01020304, kVersion = 2;
 constexpr std::uint32_t kSurface = 2, kVolume = 3;
 
 /// What a file begins with; the table of parts follows.

@@ -1,6 +1,7 @@
 #include "carat/distributed/part_samples.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -32,7 +33,7 @@ Index n_sides(const PolyhedralMesh& mesh, Index cell) {
 
 /// What consecutive samples of the part belong to.
 struct Group {
-  Index number;  // in the whole mesh
+  std::int64_t number;  // in the whole mesh
   bool own;
   Index n_samples;
 };
@@ -101,7 +102,7 @@ PartSamples number_groups(const MeshPart<Mesh>& part, const Discretization& d) {
 
 /// Collective. A finding of all processes, ascending and with the words of one that knows it; in
 /// the first process alone. Some operators look for other things on simplices.
-Finding gather(Finding finding) {
+WholeFinding gather(WholeFinding finding) {
   if (own_rank() > 0) {
     Message message;
     message.put_list(finding.meaning);
@@ -112,7 +113,7 @@ Finding gather(Finding finding) {
   for (int process = 1; process < n_processes(); ++process) {
     Message message = Message::receive(process);
     std::string meaning;
-    std::vector<Index> more;
+    std::vector<std::int64_t> more;
     message.take_list(meaning);
     message.take_list(more);
     if (finding.meaning.empty()) finding.meaning = meaning;
@@ -120,6 +121,14 @@ Finding gather(Finding finding) {
   }
   std::sort(finding.elements.begin(), finding.elements.end());
   return finding;
+}
+
+/// Those that Index can number.
+std::vector<Index> numbered(const std::vector<std::int64_t>& elements) {
+  std::vector<Index> result;
+  for (const std::int64_t element : elements)
+    if (element <= std::numeric_limits<Index>::max()) result.push_back(static_cast<Index>(element));
+  return result;
 }
 
 // What a part knows of the whole mesh, in the order of one process.
@@ -130,8 +139,8 @@ constexpr const char* kFindings[] = {"unreferenced_vertices",    "moved_virtual_
                                      "degenerate_cells",         kExcluded};
 
 /// The elements, as the part's discretization numbers them, in the whole mesh; -1: not own.
-std::vector<Index> own_elements(const PartNumbers& numbers, const Discretization& d) {
-  std::vector<Index> elements;
+std::vector<std::int64_t> own_elements(const PartNumbers& numbers, const Discretization& d) {
+  std::vector<std::int64_t> elements;
   for (std::size_t e = 0; e < numbers.elements.size(); ++e) {
     if (numbers.own_elements[e])
       elements.push_back(numbers.elements[e]);
@@ -142,15 +151,15 @@ std::vector<Index> own_elements(const PartNumbers& numbers, const Discretization
 }
 
 /// The faces in the same way.
-std::vector<Index> own_faces(const MeshPart<PolygonMesh>& part, const Discretization& d) {
+std::vector<std::int64_t> own_faces(const MeshPart<PolygonMesh>& part, const Discretization& d) {
   return own_elements(part.numbers, d);
 }
-std::vector<Index> own_faces(const MeshPart<PolyhedralMesh>& part, const Discretization& d) {
+std::vector<std::int64_t> own_faces(const MeshPart<PolyhedralMesh>& part, const Discretization& d) {
   const PartNumbers& numbers = part.numbers;
   const auto is_own = [&](Index cell) {
     return cell >= 0 && numbers.own_elements[static_cast<std::size_t>(cell)];
   };
-  std::vector<Index> faces;
+  std::vector<std::int64_t> faces;
   for (std::size_t f = 0; f < numbers.interfaces.size(); ++f) {
     const FaceCells cells = part.mesh.face_cells()[f];
     // As own_mesh() keeps them.
@@ -162,10 +171,10 @@ std::vector<Index> own_faces(const MeshPart<PolyhedralMesh>& part, const Discret
 
 /// A finding of the part with the numbers of the whole mesh.
 template <class Mesh>
-std::vector<Index> whole_numbers(const MeshPart<Mesh>& part, const Discretization& d,
-                                 const Finding& finding, const PartSamples& samples) {
+std::vector<std::int64_t> whole_numbers(const MeshPart<Mesh>& part, const Discretization& d,
+                                        const Finding& finding, const PartSamples& samples) {
   const PartNumbers& numbers = part.numbers;
-  std::vector<Index> result;
+  std::vector<std::int64_t> result;
   if (finding.name == "unreferenced_vertices") {
     // A vertex of the halo may have elements of other parts alone.
     for (Index v = 0; v < part.mesh.n_vertices(); ++v)
@@ -175,30 +184,32 @@ std::vector<Index> whole_numbers(const MeshPart<Mesh>& part, const Discretizatio
     for (const Index sample : finding.elements)
       if (const std::int64_t number = samples.numbers[static_cast<std::size_t>(sample)];
           number >= 0)
-        result.push_back(static_cast<Index>(number));
+        result.push_back(number);
   } else {
     constexpr bool kVolume = std::is_same_v<Mesh, PolyhedralMesh>;
     const bool of_faces = finding.name.ends_with("_virtual_vertices") ||
                           finding.name == "degenerate_faces" || !kVolume;
-    const std::vector<Index> places = of_faces ? own_faces(part, d) : own_elements(numbers, d);
+    const std::vector<std::int64_t> places =
+        of_faces ? own_faces(part, d) : own_elements(numbers, d);
     for (const Index element : finding.elements)
-      if (const Index place = places[static_cast<std::size_t>(element)]; place >= 0)
+      if (const std::int64_t place = places[static_cast<std::size_t>(element)]; place >= 0)
         result.push_back(place);
   }
   return result;
 }
 
 template <class Mesh>
-Diagnostics diagnose(const MeshPart<Mesh>& part, const Discretization& d, bool strict) {
+std::vector<WholeFinding> diagnose(const MeshPart<Mesh>& part, const Discretization& d,
+                                   bool strict) {
   PartSamples samples;
   if (sum_of_all(std::int64_t{d.diagnostics.count(kExcluded)}) > 0)
     samples = number_groups(part, d);
-  Diagnostics result;
+  std::vector<WholeFinding> result;
   for (const char* const name : kFindings) {
-    Finding own{name, "", {}};
+    WholeFinding own{name, "", {}};
     if (const Finding* const found = d.diagnostics.find(name))
       own = {name, found->meaning, whole_numbers(part, d, *found, samples)};
-    const Finding all = gather(std::move(own));
+    WholeFinding all = gather(std::move(own));
     on_first([&] {
       if (!strict || std::string(name) != kExcluded || all.elements.empty()) return;
       const std::string kind = all.meaning.substr(0, all.meaning.find("s whose"));
@@ -208,9 +219,9 @@ Diagnostics diagnose(const MeshPart<Mesh>& part, const Discretization& d, bool s
                                   " of its diameter to the power of its dimension, as for " +
                                   std::to_string(all.elements.size() - 1) +
                                   " more; repair the mesh, or leave out --strict",
-                              all.elements);
+                              numbered(all.elements));
     });
-    if (!all.meaning.empty()) result.add(name, all.meaning, all.elements);
+    if (!all.meaning.empty()) result.push_back(std::move(all));
   }
   return result;
 }
@@ -225,13 +236,13 @@ PartSamples number_samples(const MeshPart<PolyhedralMesh>& part, const Discretiz
   return number_groups(part, d);
 }
 
-Diagnostics whole_diagnostics(const MeshPart<PolygonMesh>& part, const Discretization& d,
-                              bool strict) {
+std::vector<WholeFinding> whole_diagnostics(const MeshPart<PolygonMesh>& part,
+                                            const Discretization& d, bool strict) {
   return diagnose(part, d, strict);
 }
 
-Diagnostics whole_diagnostics(const MeshPart<PolyhedralMesh>& part, const Discretization& d,
-                              bool strict) {
+std::vector<WholeFinding> whole_diagnostics(const MeshPart<PolyhedralMesh>& part,
+                                            const Discretization& d, bool strict) {
   return diagnose(part, d, strict);
 }
 

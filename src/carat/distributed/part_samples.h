@@ -2,6 +2,7 @@
 // The gradient samples of a part, and what its discretization found, numbered as in the whole mesh.
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "carat/mesh/mesh_part.h"
@@ -21,14 +22,21 @@ PartSamples number_samples(const MeshPart<PolygonMesh>& part, const Discretizati
 PartSamples number_samples(const MeshPart<PolyhedralMesh>& part,
                            const Discretization& discretization);
 
+/// A Finding of the whole mesh, which may have more faces and samples than Index can number.
+struct WholeFinding {
+  std::string name, meaning;
+  std::vector<std::int64_t> elements;
+};
+
 /// Collective. What all processes found of a discretization with DegeneratePolicy::Report, each
 /// finding once and with the numbers of the whole mesh; in the first process alone, elsewhere
 /// empty.
 /// \param strict  as DegeneratePolicy::Strict
-/// \throws DegenerateElement  Shared; names samples as in the whole mesh
-Diagnostics whole_diagnostics(const MeshPart<PolygonMesh>& part,
-                              const Discretization& discretization, bool strict);
-Diagnostics whole_diagnostics(const MeshPart<PolyhedralMesh>& part,
-                              const Discretization& discretization, bool strict);
+/// \throws DegenerateElement  Shared; names samples as in the whole mesh, and lists those that Index
+///                            can number
+std::vector<WholeFinding> whole_diagnostics(const MeshPart<PolygonMesh>& part,
+                                            const Discretization& discretization, bool strict);
+std::vector<WholeFinding> whole_diagnostics(const MeshPart<PolyhedralMesh>& part,
+                                            const Discretization& discretization, bool strict);
 
 }  // namespace carat

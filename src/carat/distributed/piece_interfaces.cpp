@@ -23,7 +23,8 @@ struct EdgeUse {
 };
 
 struct EdgeAnswer {
-  Index number, part, n_others;
+  std::int64_t number;
+  Index part, n_others;
 };
 
 /// An edge's use at the process that keeps the edge.
@@ -162,12 +163,13 @@ struct Named {
 };
 
 struct Told {
-  Index face, number;
+  std::int64_t number;
+  Index face;
 };
 
-/// Faces in the order in which the cells name them first.
+/// Faces in the order in which the cells name them first, from `first` on.
 void number_by_cells(const PolyhedralMesh& mesh, const Numbering& elements,
-                     const std::vector<Across>& across, InterfaceBook& book) {
+                     const std::vector<Across>& across, std::int64_t first, InterfaceBook& book) {
   const auto first_names = [&](Index c, Index f) {
     const Index other = mesh.face_cells()[static_cast<std::size_t>(f)].other(c);
     const Index beyond = other >= 0 ? elements.numbers[static_cast<std::size_t>(other)]
@@ -192,8 +194,7 @@ void number_by_cells(const PolyhedralMesh& mesh, const Numbering& elements,
           n_here += a.question.n_faces;
         }
       });
-  const std::int64_t first = sum_before(n_here, total);
-  check_count(total, "faces");
+  first += sum_before(n_here, total);
   const Lists<std::int64_t> starts =
       exchange(Lists<std::int64_t>(static_cast<std::size_t>(n_processes()), {first}));
   Lists<Told> telling(static_cast<std::size_t>(n_processes()));
@@ -203,11 +204,11 @@ void number_by_cells(const PolyhedralMesh& mesh, const Numbering& elements,
     std::int64_t next = starts[owner].front() + before[static_cast<std::size_t>(c)];
     for (const Index f : mesh.cell(c)) {
       if (!first_names(c, f)) continue;
-      const auto number = static_cast<Index>(next++);
+      const std::int64_t number = next++;
       book.numbers[static_cast<std::size_t>(f)] = number;
       const Across& other = across[static_cast<std::size_t>(f)];
       if (other.process >= 0)
-        telling[static_cast<std::size_t>(other.process)].push_back({other.face, number});
+        telling[static_cast<std::size_t>(other.process)].push_back({number, other.face});
     }
   }
   for (const std::vector<Told>& list : exchange(telling))
@@ -217,7 +218,7 @@ void number_by_cells(const PolyhedralMesh& mesh, const Numbering& elements,
 }  // namespace
 
 InterfaceBook keep_interfaces(const PolygonMesh& mesh, const Numbering& vertices,
-                              const Numbering& elements) {
+                              const Numbering& elements, std::int64_t first) {
   const auto n = static_cast<std::size_t>(n_processes());
   const EdgeTopology& edges = mesh.edges();
   const Blocks blocks(0, std::int64_t{vertices.n} - 1);
@@ -260,8 +261,7 @@ InterfaceBook keep_interfaces(const PolygonMesh& mesh, const Numbering& vertices
   };
   std::int64_t n_here = 0, total = 0;
   for (std::size_t k = 0; k < entries.size(); ++k) n_here += k == 0 || !same(k, k - 1) ? 1 : 0;
-  std::int64_t next = sum_before(n_here, total);
-  check_count(total, "edges");
+  std::int64_t next = first + sum_before(n_here, total);
   Lists<EdgeAnswer> answers(n);
   // The other processes of an edge that several share, by its place in the answers.
   Lists<std::pair<std::size_t, int>> others(n);
@@ -284,8 +284,7 @@ InterfaceBook keep_interfaces(const PolygonMesh& mesh, const Numbering& vertices
       const auto p = static_cast<std::size_t>(entries[k].process);
       for (std::size_t other = begin; other < end; ++other)
         if (other != k) others[p].emplace_back(entries[k].place, entries[other].process);
-      answers[p][entries[k].place] = {static_cast<Index>(next), part,
-                                      static_cast<Index>(end - begin - 1)};
+      answers[p][entries[k].place] = {next, part, static_cast<Index>(end - begin - 1)};
     }
     ++next;
   }
@@ -317,20 +316,21 @@ InterfaceBook keep_interfaces(const PolygonMesh& mesh, const Numbering& vertices
 
 InterfaceBook keep_interfaces(const PolyhedralMesh& mesh, const Numbering& vertices,
                               const Numbering& elements, const std::vector<std::int64_t>& ids,
-                              bool have_ids) {
+                              bool have_ids, std::int64_t first) {
   const auto n = static_cast<std::size_t>(n_processes());
   const auto n_faces = static_cast<std::size_t>(mesh.n_faces());
   InterfaceBook book;
   book.numbers.assign(n_faces, -1);
+  std::int64_t last = 0;
   if (have_ids) {
-    Numbering numbering = number_ids(ids, "faces", false);
-    book.numbers = std::move(numbering.numbers);
-    book.numbers.resize(n_faces, -1);
+    std::int64_t total = 0;
+    book.numbers = number_many_ids(ids, "faces", false, total);
+    for (std::int64_t& number : book.numbers) number += first;
+    last = first + std::max<std::int64_t>(total - 1, 0);
   }
-  std::int64_t most = 0;
-  for (const Index number : book.numbers) most = std::max<std::int64_t>(most, number);
-  most = most_of_all(most);
-  const Blocks blocks(0, have_ids ? most : std::max<std::int64_t>(vertices.n - 1, 0));
+  // By the numbers of faces or those of vertices.
+  const Blocks blocks(have_ids ? first : 0,
+                      have_ids ? last : std::max<std::int64_t>(vertices.n - 1, 0));
 
   // Faces of one cell here may have another one elsewhere.
   Lists<FaceUse> uses(n);
@@ -439,7 +439,7 @@ InterfaceBook keep_interfaces(const PolyhedralMesh& mesh, const Numbering& verti
     book.sides.push_back(sides);
   }
   sort_unique(book.halo);
-  if (!have_ids) number_by_cells(mesh, elements, across, book);
+  if (!have_ids) number_by_cells(mesh, elements, across, first, book);
   return book;
 }
 

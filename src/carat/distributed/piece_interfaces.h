@@ -19,7 +19,9 @@ struct HaloElement {
 
 /// What the whole mesh knows of a piece's interfaces.
 struct InterfaceBook {
-  std::vector<Index> numbers;     ///< of edges or faces; -1: a face that is not numbered
+  /// Of edges or faces, of which there may be more than Index can number; -1: a face that is not
+  /// numbered.
+  std::vector<std::int64_t> numbers;
   std::vector<bool> own;          ///< brought by this process
   std::vector<HaloElement> halo;  ///< ascending, each once
   /// Volumes: the faces as vertices' numbers in the whole mesh, as its lowest cell names them, and
@@ -30,11 +32,12 @@ struct InterfaceBook {
 
 /// \param vertices  in the whole mesh
 /// \param elements  in the whole mesh
+/// \param first     number of the first interface
 InterfaceBook keep_interfaces(const PolygonMesh& mesh, const Numbering& vertices,
-                              const Numbering& elements);
+                              const Numbering& elements, std::int64_t first);
 /// \param ids  of the faces; empty: they are matched by vertices, and numbered as cells name them
 InterfaceBook keep_interfaces(const PolyhedralMesh& mesh, const Numbering& vertices,
                               const Numbering& elements, const std::vector<std::int64_t>& ids,
-                              bool have_ids);
+                              bool have_ids, std::int64_t first);
 
 }  // namespace carat

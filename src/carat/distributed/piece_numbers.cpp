@@ -176,6 +176,19 @@ std::vector<Index> lowest_vertices(const Numbering& vertices, const Blocks& bloc
 }  // namespace
 
 Numbering number_ids(const std::vector<std::int64_t>& ids, const std::string& what, bool distinct) {
+  std::int64_t total = 0;
+  const std::vector<std::int64_t> numbers = number_many_ids(ids, what, distinct, total);
+  check_count(total, what);
+  Numbering result;
+  result.n = static_cast<Index>(total);
+  result.numbers.reserve(numbers.size());
+  for (const std::int64_t number : numbers) result.numbers.push_back(static_cast<Index>(number));
+  return result;
+}
+
+std::vector<std::int64_t> number_many_ids(const std::vector<std::int64_t>& ids,
+                                          const std::string& what, bool distinct,
+                                          std::int64_t& total) {
   std::int64_t least = std::numeric_limits<std::int64_t>::max(),
                most = std::numeric_limits<std::int64_t>::min();
   for (const std::int64_t id : ids) {
@@ -184,8 +197,8 @@ Numbering number_ids(const std::vector<std::int64_t>& ids, const std::string& wh
   }
   least = least_of_all(least);
   most = most_of_all(most);
-  Numbering result;
-  if (least > most) return result;
+  total = 0;
+  if (least > most) return {};
   const Blocks blocks(least, most);
   // Those that keep a block number it, then learn where it starts.
   std::int64_t n_here = 0;
@@ -207,16 +220,14 @@ Numbering number_ids(const std::vector<std::int64_t>& ids, const std::string& wh
           reply(asked[k], n_here - 1);
         }
       });
-  std::int64_t total = 0;
   const std::int64_t first = sum_before(n_here, total);
-  check_count(total, what);
   const Lists<std::int64_t> starts =
       exchange(Lists<std::int64_t>(static_cast<std::size_t>(n_processes()), {first}));
-  result.n = static_cast<Index>(total);
+  std::vector<std::int64_t> numbers;
+  numbers.reserve(ids.size());
   for (std::size_t k = 0; k < ids.size(); ++k)
-    result.numbers.push_back(static_cast<Index>(
-        starts[static_cast<std::size_t>(blocks.owner(ids[k]))].front() + places[k]));
-  return result;
+    numbers.push_back(starts[static_cast<std::size_t>(blocks.owner(ids[k]))].front() + places[k]);
+  return numbers;
 }
 
 Numbering number_in_order(std::size_t n, const std::string& what) {

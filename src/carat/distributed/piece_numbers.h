@@ -21,6 +21,12 @@ struct Numbering {
 /// \param distinct  whether an id may be in one process only, and there once
 Numbering number_ids(const std::vector<std::int64_t>& ids, const std::string& what, bool distinct);
 
+/// The same for what there may be more of than Index can number; all have an id.
+/// \param total  receives how many there are in the whole mesh
+std::vector<std::int64_t> number_many_ids(const std::vector<std::int64_t>& ids,
+                                          const std::string& what, bool distinct,
+                                          std::int64_t& total);
+
 /// Numbers of elements one process after the other.
 Numbering number_in_order(std::size_t n, const std::string& what);
 

@@ -163,13 +163,20 @@ MeshDivision divide_elements(const View& view, Index n_parts, std::span<const In
   return division;
 }
 
-/// Elements and vertices of a part.
+/// What a part has of the mesh, and its interfaces once more as the mesh numbers them.
+struct Collected {
+  PartNumbers numbers;
+  Array<Index> interfaces;
+};
+
 template <class View>
-PartNumbers collect(const View& view, const MeshDivision& division, Index part) {
+Collected collect(const View& view, const MeshDivision& division, Index part) {
   if (part < 0 || part >= division.n_parts)
     throw InvalidOption("part " + std::to_string(part) + " does not exist; there are parts 0 to " +
                         std::to_string(division.n_parts - 1));
-  PartNumbers numbers;
+  Collected collected;
+  PartNumbers& numbers = collected.numbers;
+  Array<Index>& interfaces = collected.interfaces;
   numbers.part = part;
   numbers.n_parts = division.n_parts;
   numbers.first_row = division.first_row[part];
@@ -197,27 +204,28 @@ PartNumbers collect(const View& view, const MeshDivision& division, Index part) 
     view.for_interfaces(element, [&](Index) { ++n_interfaces; });
   }
   numbers.vertices.reserve(n_vertices);
-  numbers.interfaces.reserve(n_interfaces);
+  interfaces.reserve(n_interfaces);
   for (const Index element : numbers.elements) {
     numbers.own_elements.push_back(division.element_part[element] == part);
     const std::span<const Index> vertices = view.vertices(element);
     numbers.vertices.insert(numbers.vertices.end(), vertices.begin(), vertices.end());
-    view.for_interfaces(element, [&](Index i) { numbers.interfaces.push_back(i); });
+    view.for_interfaces(element, [&](Index i) { interfaces.push_back(i); });
   }
   if (part == 0)
     for (Index v = 0; v < numbers.n_vertices; ++v)
       if (division.vertex_component[v] < 0) numbers.vertices.push_back(v);
   sort_unique(numbers.vertices);
-  sort_unique(numbers.interfaces);
+  sort_unique(interfaces);
+  numbers.interfaces.assign(interfaces.begin(), interfaces.end());
   numbers.vertex_rows.reserve(numbers.vertices.size());
   numbers.vertex_components.reserve(numbers.vertices.size());
   for (const Index v : numbers.vertices) {
     numbers.vertex_rows.push_back(division.vertex_row[v]);
     numbers.vertex_components.push_back(division.vertex_component[v]);
   }
-  for (const Index i : numbers.interfaces)
+  for (const Index i : interfaces)
     numbers.own_interfaces.push_back(division.interface_part[i] == part);
-  return numbers;
+  return collected;
 }
 
 Points select(const Points& points, const Array<Index>& vertices) {
@@ -279,7 +287,7 @@ MeshDivision divide(const PolyhedralMesh& mesh, Index n_parts,
 }
 
 MeshPart<PolygonMesh> part_of(const PolygonMesh& mesh, const MeshDivision& division, Index part) {
-  PartNumbers numbers = collect(Surface{mesh}, division, part);
+  PartNumbers numbers = collect(Surface{mesh}, division, part).numbers;
   PolygonMesh own(select(mesh.points(), numbers.vertices),
                   select(mesh.faces(), numbers.elements, numbers.vertices));
   // Edges are sorted by their vertices, whose order is kept.
@@ -288,22 +296,22 @@ MeshPart<PolygonMesh> part_of(const PolygonMesh& mesh, const MeshDivision& divis
 
 MeshPart<PolyhedralMesh> part_of(const PolyhedralMesh& mesh, const MeshDivision& division,
                                  Index part) {
-  PartNumbers numbers = collect(Volume{mesh}, division, part);
+  auto [numbers, interfaces] = collect(Volume{mesh}, division, part);
   const Array<Index>& elements = numbers.elements;
   const auto here = [&](Index cell) {
     const Index at = cell < 0 ? -1 : place(elements, cell);
     return at >= 0 && at < static_cast<Index>(elements.size()) && elements[at] == cell ? at : -1;
   };
   Array<FaceCells> face_cells;
-  face_cells.reserve(numbers.interfaces.size());
-  for (const Index f : numbers.interfaces) {
+  face_cells.reserve(interfaces.size());
+  for (const Index f : interfaces) {
     const FaceCells cells = mesh.face_cells()[f];
     face_cells.push_back({here(cells.below), here(cells.above)});
   }
   PolyhedralMesh own = PolyhedralMesh::from_face_cells(
       select(mesh.points(), numbers.vertices),
-      select(mesh.face_mesh().faces(), numbers.interfaces, numbers.vertices),
-      select(mesh.cells(), elements, numbers.interfaces), std::move(face_cells));
+      select(mesh.face_mesh().faces(), interfaces, numbers.vertices),
+      select(mesh.cells(), elements, interfaces), std::move(face_cells));
   return {std::move(own), std::move(numbers)};
 }
 

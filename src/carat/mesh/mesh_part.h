@@ -47,18 +47,21 @@ Index choose_part(std::span<const Index> parts, std::uint64_t sum_of_elements);
 MeshDivision divide(const PolygonMesh& mesh, Index n_parts, std::span<const Index> element_part);
 MeshDivision divide(const PolyhedralMesh& mesh, Index n_parts, std::span<const Index> element_part);
 
-/// What a part's mesh is in the whole one. Numbers of the part follow those of the whole mesh.
+/// What a part's mesh is in the whole one. Numbers of the part follow those of the whole mesh, of
+/// which Index numbers the vertices and elements. A mesh in parts may have more interfaces than
+/// that.
 struct PartNumbers {
   Index part = 0, n_parts = 1;
-  Index first_row = 0, end_row = 0;   ///< the part's own vertices
-  Index n_vertices = 0;               ///< of the whole mesh
-  Index n_components = 0;             ///< of the whole mesh
-  Array<Index> vertices;              ///< here -> in the whole mesh, ascending
-  Array<Index> vertex_rows;           ///< MeshDivision::vertex_row
-  Array<Index> vertex_components;     ///< MeshDivision::vertex_component
-  Array<Index> elements, interfaces;  ///< here -> in the whole mesh, ascending
-  std::vector<bool> own_elements;     ///< not those of the halo
-  std::vector<bool> own_interfaces;   ///< brought by this part
+  Index first_row = 0, end_row = 0;  ///< the part's own vertices
+  Index n_vertices = 0;              ///< of the whole mesh
+  Index n_components = 0;            ///< of the whole mesh
+  Array<Index> vertices;             ///< here -> in the whole mesh, ascending
+  Array<Index> vertex_rows;          ///< MeshDivision::vertex_row
+  Array<Index> vertex_components;    ///< MeshDivision::vertex_component
+  Array<Index> elements;             ///< here -> in the whole mesh, ascending
+  Array<std::int64_t> interfaces;    ///< here -> in the whole mesh, ascending
+  std::vector<bool> own_elements;    ///< not those of the halo
+  std::vector<bool> own_interfaces;  ///< brought by this part
 
   bool own_vertex(Index v) const { return vertex_rows[v] >= first_row && vertex_rows[v] < end_row; }
 };
