@@ -17,7 +17,8 @@ std::pair<const char*, ExitCode> classify(const std::exception& error) {
   if (dynamic_cast<const InvalidMesh*>(&error)) return {"invalid_mesh", kInput};
   if (dynamic_cast<const DegenerateElement*>(&error)) return {"degenerate_element", kInput};
   if (dynamic_cast<const SolverFailure*>(&error)) return {"solver_failure", kNumerical};
-  if (dynamic_cast<const std::bad_alloc*>(&error)) return {"out_of_memory", kNumerical};
+  if (dynamic_cast<const OutOfMemory*>(&error) || dynamic_cast<const std::bad_alloc*>(&error))
+    return {"out_of_memory", kNumerical};
   return {"internal", kNumerical};
 }
 
@@ -47,7 +48,8 @@ Failure usage_failure(const std::string& message) {
 
 int report_failure(const Failure& failure, bool json) {
   std::cout.flush();
-  std::cerr << "carat: error: " << failure.message << '\n';
+  // At once, as other processes may write to the same terminal.
+  std::cerr << "carat: error: " + failure.message + '\n';
   if (json) {
     const Json object = {
         {"error",

@@ -19,7 +19,7 @@ TEST(Processes, an_error_of_one_is_thrown_by_all) {
   // Of several the lowest is heard, and the job goes on.
   EXPECT_THROW(together([&] { throw SolverFailure(std::to_string(rank())); }),
                Shared<SolverFailure>);
-  EXPECT_THROW(together([] { throw std::bad_alloc(); }), Shared<Error>);
+  EXPECT_THROW(together([] { throw std::bad_alloc(); }), Shared<OutOfMemory>);
   EXPECT_NO_THROW(together([] {}));
 }
 

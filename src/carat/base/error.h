@@ -45,6 +45,11 @@ class IoError : public Error {
   using Error::Error;
 };
 
+/// What does not fit into memory, said by who knows more than std::bad_alloc does.
+class OutOfMemory : public Error {
+  using Error::Error;
+};
+
 /// A linear system without a trustworthy solution: not positive definite, incompatible.
 class SolverFailure : public Error {
   using Error::Error;

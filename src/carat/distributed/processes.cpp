@@ -3,11 +3,15 @@
 #include <slepcsys.h>
 
 #include <algorithm>
+#include <chrono>
 #include <climits>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <string_view>
+#include <thread>
+#include <utility>
 
 #include "carat/distributed/petsc.h"
 
@@ -16,13 +20,19 @@ namespace {
 
 enum ErrorKind { kNone, kMesh, kDegenerate, kOption, kFile, kSolver, kMemory, kOther };
 
+constexpr const char* kNoMemory = "out of memory; use more processes or machines";
+
+bool is_memory(const std::exception& error) {
+  return dynamic_cast<const OutOfMemory*>(&error) || dynamic_cast<const std::bad_alloc*>(&error);
+}
+
 ErrorKind kind_of(const std::exception& error) {
   if (dynamic_cast<const InvalidMesh*>(&error)) return kMesh;
   if (dynamic_cast<const DegenerateElement*>(&error)) return kDegenerate;
   if (dynamic_cast<const InvalidOption*>(&error)) return kOption;
   if (dynamic_cast<const IoError*>(&error)) return kFile;
   if (dynamic_cast<const SolverFailure*>(&error)) return kSolver;
-  return dynamic_cast<const std::bad_alloc*>(&error) ? kMemory : kOther;
+  return is_memory(error) ? kMemory : kOther;
 }
 
 [[noreturn]] void throw_shared(int kind, const std::string& message, std::vector<Index> elements) {
@@ -37,6 +47,8 @@ ErrorKind kind_of(const std::exception& error) {
       throw Shared<IoError>(message, std::move(elements));
     case kSolver:
       throw Shared<SolverFailure>(message, std::move(elements));
+    case kMemory:
+      throw Shared<OutOfMemory>(message, std::move(elements));
     default:
       throw Shared<Error>(message, std::move(elements));
   }
@@ -50,6 +62,17 @@ template <class Value>
 Value reduce(Value value, MPI_Datatype type, MPI_Op operation) {
   check_mpi(MPI_Allreduce(MPI_IN_PLACE, &value, 1, type, operation, PETSC_COMM_WORLD));
   return value;
+}
+
+/// Whether PETSc has met the end of memory: the code that comes back may be another.
+bool memory_is_out = false;
+
+/// Errors come back as codes, without a trace on the terminal.
+PetscErrorCode note_error(MPI_Comm, int, const char* function, const char*, PetscErrorCode error,
+                          PetscErrorType, const char*, void*) {
+  memory_is_out |= error == PETSC_ERR_MEM ||
+                   (function != nullptr && std::string_view(function).starts_with("PetscMalloc"));
+  return error;
 }
 
 /// Of a process, to all others.
@@ -72,7 +95,7 @@ void share(const std::function<void()>& work, bool works, bool names_process) {
     if (works) work();
   } catch (const std::exception& error) {
     kind = kind_of(error);
-    message = kind == kMemory ? "out of memory; use more processes or machines" : error.what();
+    message = kind == kMemory ? kNoMemory : error.what();
     if (const auto* const own = dynamic_cast<const Error*>(&error)) elements = own->elements();
   }
   const int rank = own_rank();
@@ -91,6 +114,7 @@ void share(const std::function<void()>& work, bool works, bool names_process) {
 
 void check(PetscErrorCode error) {
   if (error == 0) return;
+  if (std::exchange(memory_is_out, false)) throw OutOfMemory(kNoMemory);
   const char* general = nullptr;
   char* specific = nullptr;
   PetscErrorMessage(error, &general, &specific);
@@ -107,8 +131,7 @@ Processes::Processes(std::vector<std::string> arguments) : arguments_(std::move(
   int count = static_cast<int>(arguments_.size());
   char** values = pointers_.data();
   check(SlepcInitialize(&count, &values, nullptr, nullptr));
-  // Errors come back as codes, without a trace on the terminal.
-  check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+  check(PetscPushErrorHandler(note_error, nullptr));
   check(PetscPopSignalHandler());
   check_mpi(MPI_Comm_rank(PETSC_COMM_WORLD, &rank_));
   check_mpi(MPI_Comm_size(PETSC_COMM_WORLD, &size_));
@@ -137,8 +160,14 @@ int run_processes(const std::function<int()>& program,
     return program();
   } catch (const std::exception& error) {
     const bool shared = dynamic_cast<const SharedFailure*>(&error) != nullptr;
-    if (!shared || rank == 0) code = describe(error);
-    if (!shared) end_job(code);
+    // What several meet at once, the lowest tells, and ends the others meanwhile.
+    if (!shared) std::this_thread::sleep_for(std::chrono::milliseconds(300) * std::min(rank, 8));
+    if (!shared && is_memory(error))
+      code = describe(OutOfMemory(kNoMemory));
+    else if (!shared || rank == 0)
+      code = describe(error);
+    // Without memory MPI may wait for ever where it ends.
+    if (!shared || (rank == 0 && is_memory(error))) end_job(code);
   }
   check_mpi(MPI_Bcast(&code, 1, MPI_INT, 0, PETSC_COMM_WORLD));
   return code;
