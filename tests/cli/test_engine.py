@@ -12,7 +12,8 @@ MPIRUN = sys.argv.pop(2)
 from support import PROGRAM, CaratTest, main  # noqa: E402  (reads the first argument)
 
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                  OMPI_MCA_rmaps_base_oversubscribe="1", OPENBLAS_NUM_THREADS="1")
+                  OMPI_MCA_rmaps_base_oversubscribe="1",
+                  OMPI_MCA_mpi_yield_when_idle="1", OPENBLAS_NUM_THREADS="1")
 
 
 class EngineTest(CaratTest):

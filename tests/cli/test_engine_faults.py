@@ -15,7 +15,8 @@ from support import PROGRAM, CaratTest, main  # noqa: E402  (reads the first arg
 
 # One arena: others reserve 64 MB of addresses a thread, whether they use them or not.
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                  OMPI_MCA_rmaps_base_oversubscribe="1", OPENBLAS_NUM_THREADS="1",
+                  OMPI_MCA_rmaps_base_oversubscribe="1",
+                  OMPI_MCA_mpi_yield_when_idle="1", OPENBLAS_NUM_THREADS="1",
                   MALLOC_ARENA_MAX="1")
 
 # A job that waits for ever fails the test by this, in seconds.

@@ -87,7 +87,8 @@ class Package(unittest.TestCase):
         self.succeed(carat, "generate", "ball-voronoi", "--level", 2, "-o", mesh)
         self.succeed(carat, "partition", mesh, "-n", 4, "-o", self.folder / "parts")
         os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                          OMPI_MCA_rmaps_base_oversubscribe="1")
+                          OMPI_MCA_rmaps_base_oversubscribe="1",
+                          OMPI_MCA_mpi_yield_when_idle="1")
         program = self.folder / "distributed/poisson"
         self.assertEqual(self.succeed(MPIRUN, "-np", 4, program, self.folder / "parts/mesh.pvtu"),
                          self.sample_run("distributed/poisson"))
