@@ -2,11 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
 #include "carat/base/parallel.h"
 #include "carat/kernels/virtual_cell.h"
+#include "carat/kernels/virtual_cell_block.h"
 
 namespace carat {
 namespace {
@@ -49,6 +51,42 @@ void load(const PolyhedralMesh& mesh, const Points& points, const Points& face_p
   }
 }
 
+bool is_hexahedron(const PolyhedralMesh& mesh, Index c) {
+  const std::span<const Index> faces = mesh.cell(c);
+  return faces.size() == HexahedronBlock::kFaces &&
+         mesh.cell_vertices().size(c) == HexahedronBlock::kVertices &&
+         std::all_of(faces.begin(), faces.end(),
+                     [&](Index f) { return mesh.face(f).size() == HexahedronBlock::kCorners; });
+}
+
+/// As above, into a lane of a block.
+void load(const PolyhedralMesh& mesh, const Points& points, const Points& face_points,
+          const Array<FaceMoment>& moments, Index c, HexahedronBlock& block, int lane) {
+  const std::span<const Index> vertices = mesh.cell_vertices().row(c);
+  const std::span<const Index> faces = mesh.cell(c);
+  const auto row = [](const Points& of, Index v) {
+    return of.data() + 3 * static_cast<std::ptrdiff_t>(v);
+  };
+  const double* const anchor = row(points, vertices[0]);
+  const auto put = [&](double(&to)[3][kBlockCells], const double* x, const double* origin) {
+    for (int k = 0; k < 3; ++k) to[k][lane] = x[k] - origin[k];
+  };
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    put(block.position[i], row(points, vertices[i]), anchor);
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    const Index f = faces[k];
+    const double* const origin = row(face_points, f);
+    put(block.position[HexahedronBlock::kVertices + k], origin, anchor);
+    const FaceMoment& m = moments[f];
+    const double values[] = {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz};
+    for (int j = 0; j < 6; ++j) block.moment[k][j][lane] = values[j];
+    block.sign[k][lane] = mesh.face_cells()[f].below == c ? 0.5 : -0.5;
+    const std::span<const Index> face = mesh.face(f);
+    for (std::size_t i = 0; i < face.size(); ++i)
+      put(block.corner[k][i], row(points, face[i]), origin);
+  }
+}
+
 }  // namespace
 
 void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
@@ -79,41 +117,75 @@ void update_virtual_cells(const PolyhedralMesh& mesh, const Points& points,
     CellGeometry cell;
     std::vector<double> weights;
     Array<Index> place(static_cast<std::size_t>(mesh.n_vertices()));
-    for (Index c = begin; c < end; ++c) {
+    /// \param weights  of the vertices and face points, of one after another `stride` apart
+    const auto compose = [&](Index c, const double* weight, std::ptrdiff_t stride) {
+      // P = P_C P_F     [BBA21 (30)]
       const std::span<const Index> vertices = cell_vertices.row(c);
       double* const composed = result.cell_weights.data() + cell_vertices.begin(c);
-      if (is_tetrahedron(mesh, c)) {
-        std::fill(composed, composed + 4, 0.25);
-        const auto x = [&](std::size_t k) { return Vec3(points.row(vertices[k]).transpose()); };
-        result.cell_status[c] = is_flat_tetrahedron(x(0), x(1), x(2), x(3))
-                                    ? VirtualVertexStatus::Degenerate
-                                    : VirtualVertexStatus::Regular;
-      } else {
-        load(mesh, points, result.face_points, moments, c, cell);
-        const std::size_t n = vertices.size();
-        weights.resize(n + cell.face_points.size());
-        result.cell_status[c] = kernel.compute(cell, weights.data());
-        // P = P_C P_F     [BBA21 (30)]
-        for (std::size_t k = 0; k < n; ++k) {
-          place[vertices[k]] = static_cast<Index>(k);
-          composed[k] = weights[k];
-        }
-        const double* weight = weights.data() + n;
-        for (const Index f : mesh.cell(c)) {
-          const Index first = mesh.face_mesh().faces().begin(f);
-          const std::span<const Index> face = mesh.face(f);
-          for (std::size_t k = 0; k < face.size(); ++k)
-            composed[place[face[k]]] +=
-                *weight * result.faces.weights[first + static_cast<Index>(k)];
-          ++weight;
-        }
+      for (std::size_t k = 0; k < vertices.size(); ++k, weight += stride) {
+        place[vertices[k]] = static_cast<Index>(k);
+        composed[k] = *weight;
       }
+      for (const Index f : mesh.cell(c)) {
+        const Index first = mesh.face_mesh().faces().begin(f);
+        const std::span<const Index> face = mesh.face(f);
+        for (std::size_t k = 0; k < face.size(); ++k)
+          composed[place[face[k]]] += *weight * result.faces.weights[first + static_cast<Index>(k)];
+        weight += stride;
+      }
+    };
+    const auto set_point = [&](Index c) {
+      const std::span<const Index> vertices = cell_vertices.row(c);
+      const double* const composed = result.cell_weights.data() + cell_vertices.begin(c);
       const Eigen::RowVector3d anchor = points.row(vertices[0]);  // as for faces
       Eigen::RowVector3d offset = Eigen::RowVector3d::Zero();
       for (std::size_t k = 0; k < vertices.size(); ++k)
         offset += composed[k] * (points.row(vertices[k]) - anchor);
       result.cell_points.row(c) = anchor + offset;
+    };
+    const auto one_cell = [&](Index c) {
+      load(mesh, points, result.face_points, moments, c, cell);
+      weights.resize(cell.vertices.size() + cell.face_points.size());
+      result.cell_status[c] = kernel.compute(cell, weights.data());
+      compose(c, weights.data(), 1);
+      set_point(c);
+    };
+    HexahedronBlock block{};
+    std::array<Index, kBlockCells> waiting;
+    int n_waiting = 0;
+    // A block that is not full computes with what is left of the one before.
+    const auto flush = [&] {
+      const unsigned unsound = virtual_cell_block(block, rule.point == VirtualPoint::Centroid);
+      for (int l = 0; l < n_waiting; ++l) {
+        const Index c = waiting[static_cast<std::size_t>(l)];
+        if ((unsound >> l & 1U) != 0) {
+          one_cell(c);
+          continue;
+        }
+        result.cell_status[c] = VirtualVertexStatus::Regular;
+        compose(c, &block.weight[0][l], kBlockCells);
+        set_point(c);
+      }
+      n_waiting = 0;
+    };
+    for (Index c = begin; c < end; ++c) {
+      if (is_tetrahedron(mesh, c)) {
+        const std::span<const Index> vertices = cell_vertices.row(c);
+        std::fill_n(result.cell_weights.data() + cell_vertices.begin(c), 4, 0.25);
+        const auto x = [&](std::size_t k) { return Vec3(points.row(vertices[k]).transpose()); };
+        result.cell_status[c] = is_flat_tetrahedron(x(0), x(1), x(2), x(3))
+                                    ? VirtualVertexStatus::Degenerate
+                                    : VirtualVertexStatus::Regular;
+        set_point(c);
+      } else if (is_hexahedron(mesh, c)) {
+        load(mesh, points, result.face_points, moments, c, block, n_waiting);
+        waiting[static_cast<std::size_t>(n_waiting++)] = c;
+        if (n_waiting == kBlockCells) flush();
+      } else {
+        one_cell(c);
+      }
     }
+    if (n_waiting > 0) flush();
   });
 }
 
