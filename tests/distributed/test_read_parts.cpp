@@ -39,15 +39,6 @@ void first_alone(const Work& work) {
 const PolygonMesh& mesh_of(const SurfaceData& data) { return data.mesh; }
 const PolyhedralMesh& mesh_of(const VolumeData& data) { return data.mesh; }
 
-template <class Mesh>
-auto read_as(const std::filesystem::path& path, const Mesh&) {
-  if constexpr (std::is_same_v<Mesh, PolygonMesh>) {
-    return read_surface(path);
-  } else {
-    return read_volume(path);
-  }
-}
-
 /// Pieces with ids: the part of what one file of the whole mesh holds.
 template <class Mesh>
 void check_vtk_pieces(const Mesh& given, const std::vector<Index>& cut, const PieceForm& form) {

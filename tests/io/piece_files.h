@@ -29,6 +29,14 @@ inline void write_mesh(const std::filesystem::path& path, const PolyhedralMesh& 
   write_volume(path, mesh, fields);
 }
 
+/// What a file holds of that kind.
+inline SurfaceData read_as(const std::filesystem::path& path, const PolygonMesh&) {
+  return read_surface(path);
+}
+inline VolumeData read_as(const std::filesystem::path& path, const PolyhedralMesh&) {
+  return read_volume(path);
+}
+
 /// Values that depend on the number in the whole mesh; elements' values are those of cells.
 template <class Numbers>
 MeshFields fields_by_numbers(const Numbers& vertices, const Numbers& elements) {

@@ -62,15 +62,6 @@ void expect_same(const VolumeData& a, const VolumeData& b) {
   expect_same_fields(a.fields.cell, b.fields.cell);
 }
 
-template <class Mesh>
-auto read_as(const std::filesystem::path& path, const Mesh&) {
-  if constexpr (std::is_same_v<Mesh, PolygonMesh>) {
-    return read_surface(path);
-  } else {
-    return read_volume(path);
-  }
-}
-
 /// What a file of the whole mesh gives, in every bit and number.
 template <class Mesh>
 void check_pieces_with_ids(const Mesh& mesh, const PieceForm& form) {

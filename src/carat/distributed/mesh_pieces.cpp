@@ -42,15 +42,6 @@ struct Bundle {
   Array<FaceCells> sides;
 };
 
-void put(Message& message, const Csr& rows) {
-  message.put_list(rows.offsets);
-  message.put_list(rows.indices);
-}
-void take(Message& message, Csr& rows) {
-  message.take_list(rows.offsets);
-  message.take_list(rows.indices);
-}
-
 /// Calls visit(list) for each plain list.
 template <class AnyBundle, class Visit>
 void for_lists(AnyBundle& bundle, const Visit& visit) {

@@ -7,7 +7,6 @@
 #include "carat/base/error.h"
 
 namespace carat {
-namespace {
 
 void put(Message& message, const Csr& rows) {
   message.put_list(rows.offsets);
@@ -18,6 +17,8 @@ void take(Message& message, Csr& rows) {
   message.take_list(rows.offsets);
   message.take_list(rows.indices);
 }
+
+namespace {
 
 void put(Message& message, const Points& points) {
   message.put_list(Array<double>(points.data(), points.data() + points.size()));

@@ -62,6 +62,8 @@ class Message {
   std::size_t taken_ = 0;
 };
 
+void put(Message& message, const Csr& rows);
+void take(Message& message, Csr& rows);
 void put(Message& message, const MeshPart<PolygonMesh>& part);
 void put(Message& message, const MeshPart<PolyhedralMesh>& part);
 void take(Message& message, MeshPart<PolygonMesh>& part);

@@ -1,6 +1,5 @@
 #include "carat/io/mesh_file.h"
 
-#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "carat/base/error.h"
 #include "carat/io/format.h"
 #include "carat/io/load_file.h"
+#include "carat/io/with_path.h"
 
 namespace carat {
 namespace {
@@ -56,23 +56,6 @@ const FormatEntry& find_format(const FileContent& file) {
   if (const FormatEntry* entry = find_by_extension(file.path)) return *entry;
   throw IoError("neither its content nor its extension '" + file.path.extension().string() +
                 "' is a known mesh format; known are " + known_extensions(&FileFormat::reads));
-}
-
-/// Runs `work` and puts the path in front of what it throws.
-template <class Work>
-auto with_path(const fs::path& path, Work&& work) {
-  const std::string prefix = path.string() + ": ";
-  try {
-    return work();
-  } catch (const IoError& error) {
-    throw IoError(prefix + error.what(), error.elements());
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh(prefix + error.what(), error.elements());
-  } catch (const InvalidOption& error) {
-    throw InvalidOption(prefix + error.what(), error.elements());
-  } catch (const std::bad_alloc&) {
-    throw IoError(prefix + "does not fit into memory; close other programs or use a smaller mesh");
-  }
 }
 
 void check_fields(const std::vector<Field>& fields, const char* where, Index n_rows) {
@@ -123,7 +106,7 @@ const std::vector<FileFormat>& file_formats() {
 }
 
 MeshData read_mesh(const fs::path& path) {
-  return with_path(path, [&] {
+  return detail::with_path(path, [&] {
     for (const FormatEntry& entry : entries())
       if (entry.takes_path != nullptr && entry.takes_path(path)) return entry.read({path, {}});
     const Array<char> bytes = detail::load_file(path);
@@ -158,12 +141,12 @@ VolumeData read_volume(const fs::path& path) {
 void write_surface(const fs::path& path, const PolygonMesh& mesh, const MeshFields& fields) {
   const FormatEntry* entry = find_by_extension(path);
   if (entry == nullptr || entry->write == nullptr) refuse_to_write(path, &FileFormat::writes);
-  with_path(path, [&] {
+  detail::with_path(path, [&] {
     check_fields(fields.vertex, "vertex", mesh.n_vertices());
     check_fields(fields.face, "face", mesh.n_faces());
   });
   write_atomically(path, [&](const fs::path& temporary) {
-    with_path(path, [&] { entry->write(temporary, mesh, fields); });
+    detail::with_path(path, [&] { entry->write(temporary, mesh, fields); });
   });
 }
 
@@ -172,13 +155,13 @@ void write_volume(const fs::path& path, const PolyhedralMesh& mesh, const MeshFi
   const FormatEntry* entry = find_by_extension(path);
   if (entry == nullptr || entry->write_volume == nullptr)
     refuse_to_write(path, &FileFormat::writes_volumes);
-  with_path(path, [&] {
+  detail::with_path(path, [&] {
     check_fields(fields.vertex, "vertex", mesh.n_vertices());
     check_fields(fields.cell, "cell", mesh.n_cells());
     check_patches(patches, mesh.n_faces());
   });
   write_atomically(path, [&](const fs::path& temporary) {
-    with_path(path, [&] { entry->write_volume(temporary, mesh, fields, patches); });
+    detail::with_path(path, [&] { entry->write_volume(temporary, mesh, fields, patches); });
   });
 }
 

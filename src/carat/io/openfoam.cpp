@@ -14,6 +14,7 @@
 #include "carat/base/error.h"
 #include "carat/io/foam_file.h"
 #include "carat/io/format.h"
+#include "carat/io/with_path.h"
 
 namespace carat {
 namespace detail {
@@ -247,18 +248,6 @@ Addressing read_addressing(const fs::path& folder, std::int64_t n_points, std::i
 
 fs::path polymesh(const fs::path& processor) { return processor / "constant" / "polyMesh"; }
 
-/// Runs `work` and puts the processor's folder in front of what it throws.
-template <class Work>
-auto in_piece(const fs::path& processor, Work&& work) {
-  try {
-    return work();
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh(polymesh(processor).string() + ": " + error.what(), error.elements());
-  } catch (const IoError& error) {
-    throw IoError(polymesh(processor).string() + ": " + error.what(), error.elements());
-  }
-}
-
 /// A processor's files.
 struct FoamPiece {
   FoamLists lists;
@@ -315,7 +304,7 @@ class CaseMerger {
   explicit CaseMerger(const std::vector<fs::path>& processors) {
     std::size_t n_points = 0, n_faces = 0;
     for (const fs::path& processor : processors) {
-      pieces_.push_back(in_piece(processor, [&] { return read(polymesh(processor)); }));
+      pieces_.push_back(with_path(polymesh(processor), [&] { return read(polymesh(processor)); }));
       n_points += pieces_.back().ids.points.size();
       n_faces += pieces_.back().ids.faces.size();
     }
@@ -323,7 +312,7 @@ class CaseMerger {
     points_.resize(n_points);
     faces_.resize(n_faces);
     for (std::size_t p = 0; p < processors.size(); ++p)
-      in_piece(processors[p], [&] { add(pieces_[p]); });
+      with_path(polymesh(processors[p]), [&] { add(pieces_[p]); });
     pieces_.clear();
     while (!points_.empty() && !points_.back().known) points_.pop_back();
     while (!faces_.empty() && faces_.back().owner < 0 && faces_.back().neighbour < 0)
@@ -478,7 +467,7 @@ std::vector<std::filesystem::path> foam_processors(const std::filesystem::path& 
 }
 
 MeshPiece<PolyhedralMesh> read_foam_piece(const std::filesystem::path& folder) {
-  return detail::in_piece(folder, [&] {
+  return detail::with_path(detail::polymesh(folder), [&] {
     detail::FoamPiece files = detail::read_foam_files(detail::polymesh(folder));
     MeshPiece<PolyhedralMesh> piece;
     piece.mesh = std::move(files.mesh);

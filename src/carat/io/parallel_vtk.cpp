@@ -23,6 +23,7 @@
 #include "carat/io/load_file.h"
 #include "carat/io/vtk_session.h"
 #include "carat/io/vtk_xml.h"
+#include "carat/io/with_path.h"
 #include "carat/mesh/join_points.h"
 
 namespace carat {
@@ -172,21 +173,6 @@ VtkPiece load_piece(const fs::path& path) {
   return piece;
 }
 
-/// Runs `work` and says in front of what it throws which file it is about.
-template <class Work>
-auto in_piece(const fs::path& path, Work&& work) {
-  const std::string prefix = path.string() + ": ";
-  try {
-    return work();
-  } catch (const IoError& error) {
-    throw IoError(prefix + error.what(), error.elements());
-  } catch (const InvalidMesh& error) {
-    throw InvalidMesh(prefix + error.what(), error.elements());
-  } catch (const std::bad_alloc&) {
-    throw IoError(prefix + "does not fit into memory; close other programs or use more processes");
-  }
-}
-
 /// What the file of an index and its pieces is called.
 struct IndexType {
   std::string_view type;   ///< of the index
@@ -291,7 +277,7 @@ class Merger {
  public:
   explicit Merger(std::vector<fs::path> paths) : paths_(std::move(paths)) {
     for (const fs::path& path : paths_) {
-      pieces_.push_back(in_piece(path, [&] { return load_piece(path); }));
+      pieces_.push_back(with_path(path, [&] { return load_piece(path); }));
       n_points_.push_back(static_cast<std::size_t>(pieces_.back().points.rows()));
       n_cells_.push_back(pieces_.back().n_cells());
     }
@@ -315,7 +301,7 @@ class Merger {
       entries.assign(piece.cell(c).begin(), piece.cell(c).end());
       for_points(piece.types[c], entries,
                  [&](std::int64_t& v) { v = numbers_[row.piece][static_cast<std::size_t>(v)]; });
-      in_piece(paths_[row.piece], [&] {
+      with_path(paths_[row.piece], [&] {
         if (piece.types[c] == VTK_POLYHEDRON) {
           cells.add_polyhedron(entries, n_points);
         } else {
@@ -466,14 +452,14 @@ FormatEntry parallel_vtk_format() {
 }  // namespace detail
 
 std::vector<std::filesystem::path> parallel_pieces(const std::filesystem::path& path) {
-  return detail::in_piece(path, [&] {
+  return detail::with_path(path, [&] {
     const Array<char> bytes = detail::load_file(path);
     return detail::pieces_of({path, {bytes.data(), bytes.size()}});
   });
 }
 
 AnyMeshPiece read_piece(const std::filesystem::path& path) {
-  return detail::in_piece(path, [&]() -> AnyMeshPiece {
+  return detail::with_path(path, [&]() -> AnyMeshPiece {
     detail::VtkPiece piece = detail::load_piece(path);
     detail::VtkCells cells;
     for (std::size_t c = 0; c < piece.n_cells(); ++c)
